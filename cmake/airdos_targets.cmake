@@ -1,0 +1,38 @@
+# The compiler settings of our own code, in one place.
+add_library(airdos_options INTERFACE)
+target_compile_options(airdos_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror)
+target_include_directories(airdos_options INTERFACE ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
+if(AIRDOS_SANITIZE)
+  target_compile_options(airdos_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
+                                                  -fno-omit-frame-pointer)
+  target_link_options(airdos_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+# airdos_library(NAME SOURCES a.cc b.cc DEPS other libraries)
+function(airdos_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC ${ARG_DEPS} PRIVATE airdos_options)
+  target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
+endfunction()
+
+# airdos_program(NAME SOURCES main.cc DEPS libraries): an installed executable
+function(airdos_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_DEPS} airdos_options)
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endfunction()
+
+# airdos_test(NAME TIER SOURCES x_test.cc DEPS libraries): a GoogleTest executable; the tier is its ctest label
+function(airdos_test name tier)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 120)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_DEPS} airdos_options GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE AIRDOS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                                             AIRDOS_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${tier} TIMEOUT ${ARG_TIMEOUT})
+endfunction()

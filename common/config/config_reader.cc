@@ -1,0 +1,127 @@
+#include "common/config/config_reader.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "common/util/error.h"
+
+namespace airdos {
+namespace {
+
+void Flatten(const YAML::Node& node, const std::string& prefix, const std::string& name,
+             std::map<std::string, std::string>* values) {
+  if (node.IsScalar()) {
+    if (!values->emplace(prefix, node.Scalar()).second) {
+      throw InputError(name + ": key '" + prefix + "' appears twice");
+    }
+    return;
+  }
+  if (!node.IsMap()) {
+    throw InputError(name + ": key '" + prefix + "' must be one value or a section");
+  }
+  for (const auto& entry : node) {
+    const std::string key = entry.first.Scalar();
+    Flatten(entry.second, prefix.empty() ? key : prefix + "." + key, name, values);
+  }
+}
+
+}  // namespace
+
+ConfigReader ConfigReader::FromFile(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw InputError(path + ": cannot be read");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return FromString(text.str(), path);
+}
+
+ConfigReader ConfigReader::FromString(const std::string& text, const std::string& name) {
+  ConfigReader reader;
+  reader.name_ = name;
+  try {
+    const YAML::Node root = YAML::Load(text);
+    if (!root.IsNull()) Flatten(root, "", name, &reader.values_);
+  } catch (const YAML::Exception& error) {
+    throw InputError(name + ": line " + std::to_string(error.mark.line + 1) + ": " + error.msg);
+  }
+  return reader;
+}
+
+void ConfigReader::Override(const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos) {
+    throw InputError(name_ + ": '" + assignment + "' is not of the form section.key=value");
+  }
+  const std::string key = assignment.substr(0, equals);
+  const auto it = values_.find(key);
+  if (it == values_.end()) Fail(key, assignment.substr(equals + 1), "there is no such key");
+  it->second = assignment.substr(equals + 1);
+}
+
+const std::string& ConfigReader::Raw(const std::string& key) {
+  const auto it = values_.find(key);
+  if (it == values_.end()) throw InputError(name_ + ": key '" + key + "' is missing");
+  read_.insert(key);
+  return it->second;
+}
+
+void ConfigReader::Fail(const std::string& key, const std::string& value,
+                        const std::string& why) const {
+  throw InputError(name_ + ": key '" + key + "' with value '" + value + "': " + why);
+}
+
+void ConfigReader::Read(const std::string& key, bool* value) {
+  const std::string& raw = Raw(key);
+  if (raw != "true" && raw != "false") Fail(key, raw, "must be true or false");
+  *value = raw == "true";
+}
+
+void ConfigReader::Read(const std::string& key, std::string* value) { *value = Raw(key); }
+
+void ConfigReader::Read(const std::string& key, int* value, int min, int max) {
+  double number = 0;
+  Read(key, &number, min, max);
+  if (number != std::floor(number)) Fail(key, Raw(key), "must be a whole number");
+  *value = static_cast<int>(number);
+}
+
+void ConfigReader::Read(const std::string& key, double* value, double min, double max) {
+  const std::string& raw = Raw(key);
+  std::istringstream stream(raw);
+  stream.imbue(std::locale::classic());
+  double number = 0;
+  if (!(stream >> number) || !stream.eof()) Fail(key, raw, "must be a number");
+  if (!(number >= min && number <= max)) {
+    std::ostringstream why;
+    why << "must lie between " << min << " and " << max;
+    Fail(key, raw, why.str());
+  }
+  *value = number;
+}
+
+int ConfigReader::ReadChoice(const std::string& key, const std::vector<std::string>& choices) {
+  const std::string& raw = Raw(key);
+  std::string list;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    if (choices[i] == raw) return static_cast<int>(i);
+    list += (i == 0 ? "" : ", ") + choices[i];
+  }
+  Fail(key, raw, "must be one of " + list);
+}
+
+void ConfigReader::Finish() const {
+  for (const auto& [key, value] : values_) {
+    if (read_.count(key) == 0) Fail(key, value, "there is no such key");
+  }
+}
+
+std::string ConfigReader::Resolved() const {
+  std::string text;
+  for (const auto& [key, value] : values_) text += key + ": " + value + "\n";
+  return text;
+}
+
+}  // namespace airdos

@@ -1,0 +1,51 @@
+#ifndef AIRDOS_COMMON_CONFIG_CONFIG_READER_H_
+#define AIRDOS_COMMON_CONFIG_CONFIG_READER_H_
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace airdos {
+
+/// Strict reader of one YAML file of scalars under sections: every key that the program reads must
+/// be there, and every key that is there must be read. Throws InputError naming file, key and
+/// value. Keys are written `section.key`.
+class ConfigReader {
+ public:
+  static ConfigReader FromFile(const std::string& path);
+  /// `name` stands for the file in messages.
+  static ConfigReader FromString(const std::string& text, const std::string& name);
+
+  /// Replaces one value; `assignment` is "section.key=value" and the key must be in the file.
+  void Override(const std::string& assignment);
+
+  void Read(const std::string& key, bool* value);
+  void Read(const std::string& key, std::string* value);
+  /// The value must lie in [min, max].
+  void Read(const std::string& key, int* value, int min, int max);
+  void Read(const std::string& key, double* value, double min, double max);
+  /// The value must be one of `choices`; returns its index.
+  int ReadChoice(const std::string& key, const std::vector<std::string>& choices);
+
+  /// Throws if the file has a key that was not read.
+  void Finish() const;
+
+  /// Every key with the value in force, one `section.key: value` a line, in order of the keys.
+  std::string Resolved() const;
+
+ private:
+  ConfigReader() = default;
+  const std::string& Raw(const std::string& key);
+  [[noreturn]] void Fail(const std::string& key, const std::string& value,
+                         const std::string& why) const;
+
+  std::string name_;
+  std::map<std::string, std::string> values_;
+  std::set<std::string> read_;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_CONFIG_CONFIG_READER_H_

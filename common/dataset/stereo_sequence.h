@@ -1,0 +1,61 @@
+#ifndef AIRDOS_COMMON_DATASET_STEREO_SEQUENCE_H_
+#define AIRDOS_COMMON_DATASET_STEREO_SEQUENCE_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/geometry/se3.h"
+#include "common/geometry/stereo_camera.h"
+
+namespace airdos {
+
+/// One 2-D keypoint; confidence 0 = not seen.
+struct Keypoint {
+  float u_px = 0;
+  float v_px = 0;
+  float confidence = 0;
+};
+/// One detected person in COCO-18 order, as AlphaPose files have it.
+using PersonKeypoints = std::array<Keypoint, 18>;
+
+/// Axes of a ground-truth trajectory, of body and world alike.
+enum class TrajectoryAxes { kOptical, kNed, kUnknown };
+
+/// Everything a data set says about one frame. Files are handed on as bytes: whoever needs pixels
+/// decodes them.
+struct SequenceFrame {
+  std::int64_t utime = 0;                     ///< us, capture time
+  std::vector<std::uint8_t> left_image_file;  ///< a whole JPEG or PNG file
+  std::vector<std::uint8_t> right_image_file;
+  std::vector<std::uint8_t>
+      person_mask_file;  ///< a whole 8-bit PNG file of the left image, 0 = background; empty: none
+  std::vector<PersonKeypoints> keypoints_left;  ///< in no particular order; empty: nobody
+  std::vector<PersonKeypoints> keypoints_right;
+  std::optional<Se3> ground_truth;  ///< camera in its world, in ground_truth_axes()
+};
+
+/// A recorded stereo sequence on disk. Every reader throws InputError naming the file (and line)
+/// that cannot be used.
+class StereoSequence {
+ public:
+  virtual ~StereoSequence() = default;
+  virtual const StereoCamera& camera() const = 0;
+  virtual std::size_t num_frames() const = 0;
+  virtual TrajectoryAxes ground_truth_axes() const = 0;
+  virtual bool has_people() const = 0;  ///< whether the layout holds keypoints at all
+  virtual SequenceFrame Load(std::size_t index) const = 0;
+};
+
+/// Opens a folder and finds out its layout: TartanAir-Shibuya (image_0, alphapose_0, …), KITTI
+/// odometry (image_l/image_r or image_0/image_1, calib.txt with P0/P1 or two bare lines of twelve
+/// numbers, optional times.txt and poses.txt).
+std::unique_ptr<StereoSequence> OpenStereoSequence(const std::string& folder);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_DATASET_STEREO_SEQUENCE_H_

@@ -1,0 +1,20 @@
+#ifndef AIRDOS_COMMON_UTIL_ERROR_H_
+#define AIRDOS_COMMON_UTIL_ERROR_H_
+
+#include <stdexcept>
+#include <string>
+
+namespace airdos {
+
+/// A file, a configuration value or an argument that cannot be used. The text is one line that
+/// names the file, the key and the value; a main prints it and exits with kExitBadInput.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+inline constexpr int kExitBadInput = 2;
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_UTIL_ERROR_H_

@@ -1,0 +1,77 @@
+#ifndef AIRDOS_PROCESSES_NODE_FRAME_JOINER_H_
+#define AIRDOS_PROCESSES_NODE_FRAME_JOINER_H_
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace airdos {
+
+/// What every message starts with.
+struct Header {
+  std::int64_t utime = 0;    ///< us, capture time of the image
+  std::int64_t seq = 0;      ///< image number
+  std::int64_t session = 0;  ///< chosen by the source of the images
+};
+
+template <class Message>
+Header HeaderOf(const Message& message) {
+  return {message.utime, message.seq, message.session};
+}
+
+/// Decides, from the numbers of the messages alone, which frame is to be worked on next and when an
+/// input of it is never to come. It sees no clock, so that the decision depends only on what each
+/// channel carried and not on how the channels interleaved.
+///
+/// Frames come out in order of (session in order of appearance, seq). A frame is settled once each
+/// input has arrived or has been overtaken: its channel carried a later session, or a seq more than
+/// `reorder_window` ahead.
+class FrameJoiner {
+ public:
+  struct Key {
+    int session_rank = 0;
+    std::int64_t seq = 0;
+    friend bool operator<(const Key& a, const Key& b) {
+      return a.session_rank != b.session_rank ? a.session_rank < b.session_rank : a.seq < b.seq;
+    }
+  };
+  enum class Arrival { kNew, kDuplicate, kLate };
+  struct Frame {
+    Key key;
+    Header header;
+    std::vector<int> missing;  ///< inputs that have not arrived
+    bool settled = false;
+  };
+
+  FrameJoiner(int num_inputs, int reorder_window);
+
+  /// Notes that input number `input` of a frame arrived. kLate: the frame, or its whole session, is
+  /// done already.
+  Arrival Add(int input, const Header& header, Key* key);
+  /// The oldest frame that is not done, if any.
+  std::optional<Frame> Oldest() const;
+  /// The newest frame that has all its inputs, if any.
+  std::optional<Key> NewestComplete() const;
+  /// Marks the oldest frame as done; `num_skipped` becomes how many image numbers between it and
+  /// the frame before never came.
+  void FinishOldest(std::int64_t* num_skipped);
+  std::size_t num_pending() const { return pending_.size(); }
+
+ private:
+  struct Pending {
+    Header header;
+    std::vector<bool> arrived;
+  };
+
+  int num_inputs_;
+  std::int64_t reorder_window_;
+  std::vector<std::int64_t> sessions_;      // in order of appearance
+  std::vector<std::optional<Key>> newest_;  // per input
+  std::map<Key, Pending> pending_;
+  std::optional<Key> last_done_;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_NODE_FRAME_JOINER_H_

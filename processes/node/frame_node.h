@@ -1,0 +1,217 @@
+#ifndef AIRDOS_PROCESSES_NODE_FRAME_NODE_H_
+#define AIRDOS_PROCESSES_NODE_FRAME_NODE_H_
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/geometry/stereo_camera.h"
+#include "processes/node/channels.h"
+#include "processes/node/conversions.h"
+#include "processes/node/frame_joiner.h"
+#include "processes/node/node.h"
+
+namespace airdos {
+
+/// A node that works frame by frame. A subclass declares in its constructor which channels make up
+/// a frame (Join, JoinParts), whether it needs the calibration (JoinCalibration) and what it waits
+/// for of its own past (MissingFeedback), and then gets each frame exactly once and in order.
+template <class Inputs>
+class FrameNode : public Node {
+ public:
+  static constexpr int kReorderWindow = 1;
+  /// Frames that may wait at once; the oldest is worked on incomplete beyond it, so memory stays
+  /// bounded.
+  static constexpr std::size_t kMaxPending = 1000;
+
+  using Node::Node;
+
+  bool Step() override {
+    const std::optional<FrameJoiner::Frame> frame = Joiner().Oldest();
+    if (!frame) return false;
+    const bool is_ready =
+        frame->settled && HasCalibration(frame->header) && MissingFeedback(frame->header).empty();
+    if (!is_ready && Joiner().num_pending() <= kMaxPending) return false;
+    Work(*frame);
+    return true;
+  }
+
+  bool CompleteOldest() override {
+    const std::optional<FrameJoiner::Frame> frame = Joiner().Oldest();
+    if (!frame) return false;
+    Work(*frame);
+    return true;
+  }
+
+  void SkipToNewest() override {
+    const std::optional<FrameJoiner::Key> newest = Joiner().NewestComplete();
+    if (!newest) return;
+    while (Joiner().Oldest()->key < *newest) {
+      inputs_.erase(Joiner().Oldest()->key);
+      std::int64_t num_absent = 0;
+      Joiner().FinishOldest(&num_absent);
+      ++mutable_frames().num_skipped;
+    }
+  }
+
+  std::string waiting_for() const override {
+    if (joiner_ == nullptr) return "";
+    const std::optional<FrameJoiner::Frame> frame = joiner_->Oldest();
+    if (!frame) return "";
+    std::string text;
+    for (const int input : frame->missing)
+      text += channels_of_inputs_[static_cast<std::size_t>(input)] + " ";
+    if (!HasCalibration(frame->header)) text += std::string(channel::kCalibration) + " ";
+    for (const std::string& name : MissingFeedback(frame->header)) text += name + " ";
+    if (!text.empty()) text.pop_back();
+    return text;
+  }
+
+  std::size_t num_pending() const override {
+    return joiner_ == nullptr ? 0 : joiner_->num_pending();
+  }
+
+ protected:
+  /// One message of the channel for each frame.
+  template <class Message>
+  void Join(const std::string& channel, std::optional<Message> Inputs::*field) {
+    const int input = AddInput(channel);
+    Subscribe<Message>(channel, [this, input, channel, field](Message&& message) {
+      Arrived(input, channel, HeaderOf(message),
+              [&](Inputs& inputs) { inputs.*field = std::move(message); });
+      return std::string();
+    });
+  }
+
+  /// One or more messages of the channel for each frame, numbered by `part` and `num_parts`; handed
+  /// over in order of `part`.
+  template <class Message>
+  void JoinParts(const std::string& channel, std::vector<Message> Inputs::*field) {
+    const int input = AddInput(channel);
+    Subscribe<Message>(channel, [this, input, channel, field](Message&& message) {
+      const Header header = HeaderOf(message);
+      std::map<int, Message>& parts = PartsOf<Message>(channel)[{header.session, header.seq}];
+      const int num_parts = message.num_parts;
+      const int part = message.part;
+      parts[part] = std::move(message);
+      if (static_cast<int>(parts.size()) < num_parts) return std::string();
+      Arrived(input, channel, header, [&](Inputs& inputs) {
+        for (auto& [number, content] : parts) (inputs.*field).push_back(std::move(content));
+      });
+      // What is older can only be incomplete.
+      auto& all = PartsOf<Message>(channel);
+      all.erase(all.begin(), std::next(all.find({header.session, header.seq})));
+      return std::string();
+    });
+  }
+
+  /// Frames wait for the calibration of their session; ProcessFrame() then finds it in camera().
+  void JoinCalibration() {
+    needs_calibration_ = true;
+    Subscribe<stereo_calibration_t>(channel::kCalibration, [this](stereo_calibration_t&& message) {
+      const StereoCamera camera = ToStereoCamera(message);
+      auto& history = calibrations_[message.session];
+      const auto after = history.upper_bound(message.seq);
+      if (after != history.begin() && std::prev(after)->second == camera) return std::string();
+      history[message.seq] = camera;
+      return std::string();
+    });
+  }
+
+  /// Channels of feedback without which the frame must not start; empty where none is needed.
+  virtual std::vector<std::string> MissingFeedback(const Header&) const { return {}; }
+  /// A frame of another session than the one before is about to be processed: forget everything.
+  virtual void StartSession(const Header& header) = 0;
+  /// Publishes exactly one output for the frame, whatever is missing from `inputs`.
+  virtual void ProcessFrame(const Header& header, Inputs inputs) = 0;
+
+  /// Calibration of the frame in work.
+  const StereoCamera& camera() const { return camera_; }
+
+ private:
+  template <class Message>
+  using Parts = std::map<std::pair<std::int64_t, std::int64_t>, std::map<int, Message>>;
+
+  template <class Message>
+  Parts<Message>& PartsOf(const std::string& channel) {
+    std::shared_ptr<void>& parts = parts_[channel];
+    if (parts == nullptr) parts = std::make_shared<Parts<Message>>();
+    return *static_cast<Parts<Message>*>(parts.get());
+  }
+
+  int AddInput(const std::string& channel) {
+    AIRDOS_CHECK(joiner_ == nullptr);
+    channels_of_inputs_.push_back(channel);
+    return static_cast<int>(channels_of_inputs_.size()) - 1;
+  }
+
+  FrameJoiner& Joiner() {
+    if (joiner_ == nullptr) {
+      joiner_ = std::make_unique<FrameJoiner>(static_cast<int>(channels_of_inputs_.size()),
+                                              kReorderWindow);
+    }
+    return *joiner_;
+  }
+
+  template <class Fill>
+  void Arrived(int input, const std::string& channel, const Header& header, Fill fill) {
+    FrameJoiner::Key key;
+    if (Joiner().Add(input, header, &key) == FrameJoiner::Arrival::kNew) {
+      fill(inputs_[key]);
+    } else {
+      ++counters(channel).num_duplicate;
+    }
+  }
+
+  const StereoCamera* CalibrationOf(const Header& header) const {
+    const auto history = calibrations_.find(header.session);
+    if (history == calibrations_.end()) return nullptr;
+    const auto after = history->second.upper_bound(header.seq);
+    // A calibration that came late holds for the frames before it as well: it is the first that is
+    // known.
+    return after == history->second.begin() ? &after->second : &std::prev(after)->second;
+  }
+  bool HasCalibration(const Header& header) const {
+    return !needs_calibration_ || CalibrationOf(header) != nullptr;
+  }
+
+  void Work(const FrameJoiner::Frame& frame) {
+    Inputs inputs = std::move(inputs_[frame.key]);
+    inputs_.erase(frame.key);
+    std::int64_t num_absent = 0;
+    Joiner().FinishOldest(&num_absent);
+    for (const std::string& channel : channels_of_inputs_)
+      counters(channel).num_missing += num_absent;
+    for (const int input : frame.missing) {
+      ++counters(channels_of_inputs_[static_cast<std::size_t>(input)]).num_missing;
+    }
+    if (!frame.missing.empty() || !HasCalibration(frame.header)) ++mutable_frames().num_incomplete;
+    if (!HasCalibration(frame.header)) return;  // without it no pixel has a meaning
+    ++mutable_frames().num_done;
+    if (needs_calibration_) camera_ = *CalibrationOf(frame.header);
+    if (!session_ || *session_ != frame.header.session) {
+      session_ = frame.header.session;
+      StartSession(frame.header);
+    }
+    ProcessFrame(frame.header, std::move(inputs));
+  }
+
+  std::vector<std::string> channels_of_inputs_;
+  std::unique_ptr<FrameJoiner> joiner_;
+  std::map<FrameJoiner::Key, Inputs> inputs_;
+  std::map<std::string, std::shared_ptr<void>> parts_;
+  bool needs_calibration_ = false;
+  std::map<std::int64_t, std::map<std::int64_t, StereoCamera>>
+      calibrations_;  // by session, then first seq
+  StereoCamera camera_;
+  std::optional<std::int64_t> session_;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_NODE_FRAME_NODE_H_

@@ -1,0 +1,105 @@
+#ifndef AIRDOS_PROCESSES_NODE_NODE_H_
+#define AIRDOS_PROCESSES_NODE_NODE_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "processes/node/codec.h"
+#include "processes/node/validate.h"
+
+namespace airdos {
+
+struct Envelope {
+  std::string channel;
+  std::vector<std::uint8_t> payload;
+};
+
+/// What a node has seen of one of its input channels.
+struct ChannelCounters {
+  std::int64_t num_received = 0;
+  std::int64_t num_missing = 0;
+  std::int64_t num_duplicate = 0;
+  std::int64_t num_rejected = 0;
+  std::string last_reject;  ///< why, in words
+};
+
+struct FrameCounters {
+  std::int64_t num_done = 0;
+  std::int64_t num_incomplete = 0;
+  std::int64_t num_skipped = 0;
+};
+
+/// One vertex of the Kahn network: bytes in, bytes out. No clock, no thread, no transport; whoever
+/// owns it (a process behind LCM, airdos-replay, a test) hands in what arrived and takes out what
+/// is to be published. What it publishes on a channel depends only on what each of its input
+/// channels carried, not on how they interleaved.
+class Node {
+ public:
+  explicit Node(std::string name) : name_(std::move(name)) {}
+  virtual ~Node() = default;
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  const std::string& name() const { return name_; }
+  std::vector<std::string> input_channels() const;
+
+  /// Takes in one message; never throws, whatever the bytes are. Bytes that do not decode or make
+  /// no sense are counted.
+  void Receive(const std::string& channel, const void* data, std::size_t size);
+  /// Works on the next frame that is ready. False if none is.
+  virtual bool Step() = 0;
+  /// Works on the oldest frame without the inputs it still lacks: after a deadline, or at the end
+  /// of a log. False if none waits.
+  virtual bool CompleteOldest() = 0;
+  /// Drops (and counts) the frames that are older than the newest complete one: realtime pace.
+  virtual void SkipToNewest() = 0;
+  /// Channels that the oldest waiting frame lacks, separated by spaces; empty if no frame waits.
+  virtual std::string waiting_for() const = 0;
+  virtual std::size_t num_pending() const = 0;
+
+  /// What was published since the last call, in order.
+  std::vector<Envelope> TakeOutput();
+
+  const std::map<std::string, ChannelCounters>& channels() const { return channels_; }
+  const FrameCounters& frames() const { return frames_; }
+
+ protected:
+  /// `handler` returns why it rejects the message, or an empty text. Messages that fail Validate()
+  /// never reach it.
+  template <class Message>
+  void Subscribe(const std::string& channel, std::function<std::string(Message&&)> handler) {
+    channels_[channel];
+    handlers_[channel] = [handler](const void* data, std::size_t size) -> std::string {
+      Message message;
+      if (!Decode(data, size, &message)) return "does not decode";
+      const std::string reason = Validate(message);
+      return reason.empty() ? handler(std::move(message)) : reason;
+    };
+  }
+
+  template <class Message>
+  void Publish(const std::string& channel, const Message& message) {
+    output_.push_back({channel, Encode(message)});
+  }
+
+  ChannelCounters& counters(const std::string& channel) { return channels_[channel]; }
+  FrameCounters& mutable_frames() { return frames_; }
+
+ private:
+  using Handler = std::function<std::string(const void*, std::size_t)>;
+
+  std::string name_;
+  std::map<std::string, Handler> handlers_;
+  std::map<std::string, ChannelCounters> channels_;
+  FrameCounters frames_;
+  std::vector<Envelope> output_;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_NODE_NODE_H_

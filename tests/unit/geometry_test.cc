@@ -1,0 +1,91 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "common/geometry/se3.h"
+#include "common/geometry/stereo_camera.h"
+
+namespace airdos {
+namespace {
+
+constexpr double kExact = 1e-12;  // a few roundings of numbers around 1
+
+Vector6d RandomTangent(std::mt19937* generator, double scale) {
+  std::normal_distribution<double> normal(0, scale);
+  Vector6d delta;
+  for (int i = 0; i < 6; ++i) delta[i] = normal(*generator);
+  return delta;
+}
+
+TEST(Se3Test, BoxplusAndBoxminusAreInverse) {
+  std::mt19937 generator(1);
+  for (const double scale : {1e-9, 1e-4, 0.5}) {
+    for (int i = 0; i < 20; ++i) {
+      const Se3 T_A_B = Boxplus(Se3(), RandomTangent(&generator, 1.0));
+      const Vector6d delta = RandomTangent(&generator, scale);
+      EXPECT_LT((Boxminus(Boxplus(T_A_B, delta), T_A_B) - delta).norm(), kExact);
+    }
+  }
+}
+
+TEST(Se3Test, ComposesLikeMatrices) {
+  std::mt19937 generator(2);
+  const Se3 T_A_B = Boxplus(Se3(), RandomTangent(&generator, 1.0));
+  const Se3 T_B_C = Boxplus(Se3(), RandomTangent(&generator, 1.0));
+  EXPECT_LT(((T_A_B * T_B_C).matrix() - T_A_B.matrix() * T_B_C.matrix()).norm(), kExact);
+  EXPECT_LT(((T_A_B * T_A_B.inverse()).matrix() - Eigen::Matrix4d::Identity()).norm(), kExact);
+}
+
+TEST(Se3Test, RightJacobianMatchesCentralDifferences) {
+  std::mt19937 generator(3);
+  constexpr double kStep = 1e-6;
+  for (const double scale : {1e-7, 0.1, 1.0}) {
+    const Eigen::Vector3d v = RandomTangent(&generator, scale).head<3>();
+    Eigen::Matrix3d numeric;
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector3d d = kStep * Eigen::Vector3d::Unit(i);
+      numeric.col(i) = LogSo3(ExpSo3(v - d).conjugate() * ExpSo3(v + d)) / (2 * kStep);
+    }
+    EXPECT_LT((RightJacobianSo3(v) - numeric).norm(), 1e-8);
+    EXPECT_LT(
+        (RightJacobianSo3(v) * RightJacobianInverseSo3(v) - Eigen::Matrix3d::Identity()).norm(),
+        1e-9);
+  }
+}
+
+TEST(StereoCameraTest, ProjectsAndTriangulates) {
+  const StereoCamera camera{640, 360, 700, 710, 320, 180, 0.25};
+  const Eigen::Vector3d uvu = camera.ProjectStereo({1, 0.5, 5});
+  EXPECT_NEAR(uvu.x(), 460, kExact * 1e3);
+  EXPECT_NEAR(uvu.y(), 251, kExact * 1e3);
+  EXPECT_NEAR(uvu.z(), 425, kExact * 1e3);
+  EXPECT_LT((*camera.Triangulate(460, 251, 425) - Eigen::Vector3d(1, 0.5, 5)).norm(), kExact * 1e3);
+  EXPECT_FALSE(camera.Triangulate(100, 100, 100));
+}
+
+TEST(StereoCameraTest, JacobianMatchesCentralDifferences) {
+  const StereoCamera camera{640, 360, 700, 710, 320, 180, 0.25};
+  const Eigen::Vector3d p_C(1.3, -0.4, 6);
+  constexpr double kStep = 1e-5;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d d = kStep * Eigen::Vector3d::Unit(i);
+    const Eigen::Vector3d numeric =
+        (camera.ProjectStereo(p_C + d) - camera.ProjectStereo(p_C - d)) / (2 * kStep);
+    EXPECT_LT((camera.ProjectStereoJacobian(p_C).col(i) - numeric).norm(), 1e-6);
+  }
+}
+
+TEST(StereoCameraTest, RejectsCalibrationsWithoutMeaning) {
+  const StereoCamera good{640, 360, 700, 710, 320, 180, 0.25};
+  EXPECT_TRUE(good.IsValid());
+  StereoCamera bad = good;
+  bad.baseline_m = -0.25;
+  EXPECT_FALSE(bad.IsValid());
+  bad = good;
+  bad.fx_px = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(bad.IsValid());
+}
+
+}  // namespace
+}  // namespace airdos
