@@ -63,4 +63,23 @@ std::optional<cv::Mat> DecodeGray(const image_t& message) { return Decode(messag
 
 std::optional<cv::Mat> DecodeColor(const image_t& message) { return Decode(message, true); }
 
+std::optional<cv::Mat> DecodeMask(const person_mask_t& message) {
+  image_t image;
+  image.width = message.width;
+  image.height = message.height;
+  image.num_bytes = message.num_bytes;
+  image.data = message.data;
+  switch (message.encoding) {
+    case person_mask_t::ENCODING_PNG:
+      image.encoding = image_t::ENCODING_PNG;
+      break;
+    case person_mask_t::ENCODING_RAW_GRAY8:
+      image.encoding = image_t::ENCODING_RAW_GRAY8;
+      break;
+    default:
+      return std::nullopt;
+  }
+  return DecodeGray(image);
+}
+
 }  // namespace airdos

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "airdos/image_t.hpp"
+#include "airdos/person_mask_t.hpp"
 
 namespace airdos {
 
@@ -14,6 +15,9 @@ namespace airdos {
 /// result never points into the message.
 std::optional<cv::Mat> DecodeGray(const image_t& message);
 std::optional<cv::Mat> DecodeColor(const image_t& message);
+
+/// Pixels of a mask message (CV_8UC1, not 0 = a person); nothing in the same cases, or where it holds no mask.
+std::optional<cv::Mat> DecodeMask(const person_mask_t& message);
 
 }  // namespace airdos
 
