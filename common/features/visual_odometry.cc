@@ -1,5 +1,6 @@
 #include "common/features/visual_odometry.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -95,8 +96,8 @@ OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoIm
   frame.sightings = KeepSpread(view, std::move(inliers));
 
   UpdateLandmarks(view, frame.T_W_C, frame.sightings);
-  Remember(images.id, images.time_s, frame.T_W_C, predicted,
-           frame.state == TrackingState::kTracking);
+  Remember(images.id, images.time_s, frame.T_W_C);
+  if (frame.state == TrackingState::kTracking) LearnFrom(estimate, prior);
   CreateLandmarks(view, frame.T_W_C, &frame.sightings);
   map_.Cull(images.id);
   return frame;
@@ -111,7 +112,7 @@ OdometryFrame VisualOdometry::Coast(FrameId id, double time_s) {
   frame.T_W_C = predicted;
   frame.prior_sigma_position_m = prior.sigma_position_m;
   frame.prior_sigma_orientation_rad = prior.sigma_orientation_rad;
-  Remember(id, time_s, predicted, predicted, false);
+  Remember(id, time_s, predicted);
   return frame;
 }
 
@@ -358,13 +359,24 @@ void VisualOdometry::CreateLandmarks(const View& view, const Se3& T_W_C,
   }
 }
 
-void VisualOdometry::Remember(FrameId id, double time_s, const Se3& T_W_C,
-                              const Se3& T_W_C_predicted, bool is_tracked) {
-  if (is_tracked) innovations_.push_back(Boxminus(T_W_C, T_W_C_predicted));
-  if (innovations_.size() > kNumInnovations) innovations_.pop_front();
+void VisualOdometry::Remember(FrameId id, double time_s, const Se3& T_W_C) {
   map_.SetPose(id, T_W_C);
   recent_.emplace_back(id, time_s);
   if (recent_.size() > kRecentFrames) recent_.pop_front();
+}
+
+void VisualOdometry::LearnFrom(const PoseEstimate& estimate, const PosePrior& prior) {
+  // A frame that sees little is off because it sees little: it must not loosen the prior that it
+  // needs most.
+  const Eigen::LDLT<Matrix6d> ldlt(estimate.information);
+  if (ldlt.info() != Eigen::Success || !ldlt.isPositive()) return;
+  const Matrix6d covariance = ldlt.solve(Matrix6d::Identity());
+  const double sigma_position_m = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+  const double sigma_orientation_rad = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  if (!(sigma_position_m < 0.5 * prior.sigma_position_m)) return;
+  if (!(sigma_orientation_rad < 0.5 * prior.sigma_orientation_rad)) return;
+  innovations_.push_back(Boxminus(estimate.T_W_C, prior.T_W_C));
+  if (innovations_.size() > kNumInnovations) innovations_.pop_front();
 }
 
 TrackingState VisualOdometry::StateOf(int num_inliers) const {

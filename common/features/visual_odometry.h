@@ -108,8 +108,10 @@ class VisualOdometry {
                        const std::vector<LandmarkSighting>& sightings);
   void CreateLandmarks(const View& view, const Se3& T_W_C,
                        std::vector<LandmarkSighting>* sightings);
-  void Remember(FrameId id, double time_s, const Se3& T_W_C, const Se3& T_W_C_predicted,
-                bool is_tracked);
+  void Remember(FrameId id, double time_s, const Se3& T_W_C);
+  /// Notes by how much the prediction was off, if the frame's own measurements say it better than
+  /// the prior did.
+  void LearnFrom(const PoseEstimate& estimate, const PosePrior& prior);
   TrackingState StateOf(int num_inliers) const;
 
   const VisualOdometryOptions options_;
