@@ -102,8 +102,7 @@ class VisualOdometry {
   std::vector<LandmarkSighting> Sight(const View& view, const Hypothesis& hypothesis);
   std::optional<LandmarkSighting> SightOne(const View& view, const VisibleLandmark& visible,
                                            const Feature* feature) const;
-  std::vector<LandmarkSighting> KeepSpread(const View& view,
-                                           std::vector<LandmarkSighting> sightings) const;
+  std::vector<LandmarkSighting> KeepSpread(std::vector<LandmarkSighting> sightings) const;
   void UpdateLandmarks(const View& view, const Se3& T_W_C,
                        const std::vector<LandmarkSighting>& sightings);
   void CreateLandmarks(const View& view, const Se3& T_W_C,
