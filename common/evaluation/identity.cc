@@ -40,9 +40,9 @@ IdentityScore IdentityEvaluator::Score() const {
   }
   if (people_frames + track_frames == 0) return score;
   // Most frames explained = least cost, where a pair saves the frames it explains.
-  Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(
-      static_cast<Eigen::Index>(frames_of_person_.size()),
-      static_cast<Eigen::Index>(frames_of_track_.size()), most + 1.0);
+  Eigen::MatrixXd cost =
+      Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(frames_of_person_.size()),
+                                static_cast<Eigen::Index>(frames_of_track_.size()), most + 1.0);
   Eigen::Index row = 0;
   for (const auto& [person, frames] : frames_of_person_) {
     Eigen::Index column = 0;

@@ -34,7 +34,7 @@ class IdentityEvaluator {
   std::map<std::int64_t, int> frames_of_person_;
   std::map<std::int64_t, int> frames_of_track_;
   std::map<std::int64_t, std::map<std::int64_t, int>> frames_of_both_;  // person, track
-  std::map<std::int64_t, std::int64_t> last_track_;                    // of a person
+  std::map<std::int64_t, std::int64_t> last_track_;                     // of a person
   int num_switches_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "common/human/joint_triangulator.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
