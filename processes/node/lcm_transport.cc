@@ -41,6 +41,13 @@ class StderrSilencer {
   int saved_;
 };
 
+/// Multicast with a large receive buffer, as far as the system allows, unless the URL says how
+/// large.
+std::string WithReceiveBuffer(const std::string& url) {
+  if (url.rfind("udpm://", 0) != 0 || url.find("recv_buf_size") != std::string::npos) return url;
+  return url + (url.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=4194304";
+}
+
 [[noreturn]] void FailToOpen(const std::string& url) {
   if (url.rfind("udpm://", 0) == 0) {
     throw InputError("LCM URL '" + url +
