@@ -85,6 +85,7 @@ start() {
   shift
   setsid setpriv --pdeathsig TERM -- "$@" > "$run_dir/$name.log" 2>&1 < /dev/null &
   pids[$name]=$!
+  echo "$name=${pids[$name]}" >> "$run_dir/state"
 }
 
 is_running() { [[ -e /proc/${pids[$1]}/stat ]] && ! grep -q '^State:[[:space:]]*Z' "/proc/${pids[$1]}/status" 2> /dev/null; }

@@ -71,6 +71,7 @@ FAKE
 }
 
 start_live() {
+  rm -rf "$work/run" "$work/live.out" "$work/live.err"
   env AIRDOS_BIN="$work/bin" PATH="$work/bin:$PATH" "$scripts/run_live.sh" --run-dir "$work/run" "$@" \
     > "$work/live.out" 2> "$work/live.err" < /dev/null &
   live_pid=$!
@@ -108,7 +109,7 @@ processes_start_and_end_together() {
 others_go_on_when_one_is_killed() {
   start_live
   await "READY" grep -qs "READY: frontend" "$work/live.out"
-  kill -KILL "$(pids_of airdos-optimizer)"
+  kill -KILL "$(sed -n 's/^optimizer=//p' "$work/run/state")"
   await "the report" grep -q "optimizer ended with exit code 137; the others go on" "$work/live.out"
   [[ -n $(pids_of airdos-frontend) ]] || fail "the frontend does not go on"
   kill -TERM "$live_pid"
