@@ -10,7 +10,7 @@ set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-log='' speed=1 run=$AIRDOS_ROOT/logs/runs/latest
+log='' speed=1 run=$AIRDOS_RUNS/latest
 while (($# > 0)); do
   case $1 in
     --speed | --run)

@@ -60,15 +60,14 @@ fi
 
 if [[ $is_inside == no ]]; then
   if [[ -z $run_dir ]]; then
-    runs=$AIRDOS_ROOT/logs/runs
-    run_dir=$runs/$(date +%Y%m%d_%H%M%S)_$$
+    run_dir=$AIRDOS_RUNS/$(date +%Y%m%d_%H%M%S)_$$
     mkdir -p "$run_dir"
-    ln -sfn "$(basename "$run_dir")" "$runs/latest"
+    ln -sfn "$(basename "$run_dir")" "$AIRDOS_RUNS/latest"
     original_arguments+=(--run-dir "$run_dir")
   fi
   mkdir -p "$run_dir"
   if [[ $host_network == yes ]]; then
-    "$AIRDOS_ROOT/launch_scripts/network_setup.sh" --check || die "--host-network: the network is not fit for LCM (see above)"
+    "$(dirname "$0")/network_setup.sh" --check || die "--host-network: the network is not fit for LCM (see above)"
   else
     run_in_new_network "$0" "${original_arguments[@]}" --inside
   fi
