@@ -49,11 +49,14 @@ class StereoSequence {
   virtual TrajectoryAxes ground_truth_axes() const = 0;
   virtual bool has_people() const = 0;  ///< whether the layout holds keypoints at all
   virtual SequenceFrame Load(std::size_t index) const = 0;
+  /// What had to be assumed about the folder (calibration, frame rate, axes), one sentence each:
+  /// for the user to read.
+  virtual std::vector<std::string> notes() const { return {}; }
 };
 
-/// Opens a folder and finds out its layout: TartanAir-Shibuya (image_0, alphapose_0, …), KITTI
-/// odometry (image_l/image_r or image_0/image_1, calib.txt with P0/P1 or two bare lines of twelve
-/// numbers, optional times.txt and poses.txt).
+/// Opens a folder and finds out its layout: KITTI odometry where there is a calib.txt
+/// (kitti_sequence.h), else TartanAir-Shibuya where there are image_0 and image_1
+/// (shibuya_sequence.h).
 std::unique_ptr<StereoSequence> OpenStereoSequence(const std::string& folder);
 
 }  // namespace airdos

@@ -7,41 +7,66 @@
 namespace airdos {
 
 FrameJoiner::FrameJoiner(int num_inputs, int reorder_window)
-    : num_inputs_(num_inputs),
+    : num_inputs_(static_cast<std::size_t>(num_inputs)),
       reorder_window_(reorder_window),
-      newest_(static_cast<std::size_t>(num_inputs)) {}
+      newest_(num_inputs_) {
+  AIRDOS_CHECK(num_inputs > 0 && reorder_window >= 0);
+}
 
-FrameJoiner::Arrival FrameJoiner::Add(int input, const Header& header, Key* key) {
-  AIRDOS_CHECK(input >= 0 && input < num_inputs_);
+bool FrameJoiner::IsOvertaken(std::size_t input, const Key& key) const {
+  const std::optional<Key>& newest = newest_[input];
+  return newest && Key{key.session_rank, key.seq + reorder_window_} < *newest;
+}
+
+bool FrameJoiner::MayHavePredecessor(const Key& key) const {
+  if (key.seq == 0) return false;
+  if (last_done_ && last_done_->session_rank == key.session_rank &&
+      last_done_->seq + 1 == key.seq) {
+    return false;
+  }
+  const Key predecessor{key.session_rank, key.seq - 1};
+  for (std::size_t input = 0; input < num_inputs_; ++input) {
+    if (!IsOvertaken(input, predecessor)) return true;
+  }
+  return false;
+}
+
+FrameJoiner::Arrival FrameJoiner::Announce(int input, const Header& header, Key* key) {
+  const auto slot = static_cast<std::size_t>(input);
+  AIRDOS_CHECK(input >= 0 && slot < num_inputs_);
   const auto session = std::find(sessions_.begin(), sessions_.end(), header.session);
   key->session_rank = static_cast<int>(session - sessions_.begin());
   key->seq = header.seq;
   if (session == sessions_.end()) sessions_.push_back(header.session);
 
-  const auto slot = static_cast<std::size_t>(input);
+  // Not "is the frame done": that would depend on how far the other channels are.
+  if (IsOvertaken(slot, *key)) return Arrival::kLate;
   if (!newest_[slot] || *newest_[slot] < *key) newest_[slot] = *key;
+  // Only after a deadline passed can a frame be done that was not overtaken.
   if (last_done_ && !(*last_done_ < *key)) return Arrival::kLate;
 
   auto [it, is_new] = pending_.try_emplace(*key);
   if (is_new) {
     it->second.header = header;
-    it->second.arrived.assign(static_cast<std::size_t>(num_inputs_), false);
+    it->second.arrived.assign(num_inputs_, false);
   }
-  if (it->second.arrived[slot]) return Arrival::kDuplicate;
-  it->second.arrived[slot] = true;
-  return Arrival::kNew;
+  return it->second.arrived[slot] ? Arrival::kDuplicate : Arrival::kNew;
+}
+
+FrameJoiner::Arrival FrameJoiner::Add(int input, const Header& header, Key* key) {
+  const Arrival arrival = Announce(input, header, key);
+  if (arrival == Arrival::kNew) pending_.at(*key).arrived[static_cast<std::size_t>(input)] = true;
+  return arrival;
 }
 
 std::optional<FrameJoiner::Frame> FrameJoiner::Oldest() const {
   if (pending_.empty()) return std::nullopt;
   const auto& [key, pending] = *pending_.begin();
-  Frame frame{key, pending.header, {}, true};
-  for (int input = 0; input < num_inputs_; ++input) {
-    const auto slot = static_cast<std::size_t>(input);
-    if (pending.arrived[slot]) continue;
-    frame.missing.push_back(input);
-    const Key overtaken_after{key.session_rank, key.seq + reorder_window_};
-    if (!newest_[slot] || !(overtaken_after < *newest_[slot])) frame.settled = false;
+  Frame frame{key, pending.header, {}, !MayHavePredecessor(key)};
+  for (std::size_t input = 0; input < num_inputs_; ++input) {
+    if (pending.arrived[input]) continue;
+    frame.missing.push_back(static_cast<int>(input));
+    if (!IsOvertaken(input, key)) frame.settled = false;
   }
   return frame;
 }

@@ -6,27 +6,21 @@
 #include <optional>
 #include <vector>
 
+#include "processes/node/header.h"
+
 namespace airdos {
-
-/// What every message starts with.
-struct Header {
-  std::int64_t utime = 0;    ///< us, capture time of the image
-  std::int64_t seq = 0;      ///< image number
-  std::int64_t session = 0;  ///< chosen by the source of the images
-};
-
-template <class Message>
-Header HeaderOf(const Message& message) {
-  return {message.utime, message.seq, message.session};
-}
 
 /// Decides, from the numbers of the messages alone, which frame is to be worked on next and when an
 /// input of it is never to come. It sees no clock, so that the decision depends only on what each
 /// channel carried and not on how the channels interleaved.
 ///
-/// Frames come out in order of (session in order of appearance, seq). A frame is settled once each
-/// input has arrived or has been overtaken: its channel carried a later session, or a seq more than
-/// `reorder_window` ahead.
+/// Frames come out in order of (session in order of appearance, seq). On each channel, a frame is
+/// overtaken once the channel carried a later session, or a seq more than `reorder_window` ahead; a
+/// message that comes after that is late, even if its frame still waits for another channel. A
+/// frame is settled once each input has arrived or has been overtaken, and no older frame can
+/// appear any more.
+///
+/// Limit: the sessions must appear in the same order on every channel.
 class FrameJoiner {
  public:
   struct Key {
@@ -46,9 +40,11 @@ class FrameJoiner {
 
   FrameJoiner(int num_inputs, int reorder_window);
 
-  /// Notes that input number `input` of a frame arrived. kLate: the frame, or its whole session, is
-  /// done already.
+  /// Notes that input number `input` of a frame arrived.
   Arrival Add(int input, const Header& header, Key* key);
+  /// Notes that input number `input` has begun to arrive, in parts; Add() tells when it is whole.
+  /// kDuplicate: it is whole already.
+  Arrival Announce(int input, const Header& header, Key* key);
   /// The oldest frame that is not done, if any.
   std::optional<Frame> Oldest() const;
   /// The newest frame that has all its inputs, if any.
@@ -64,7 +60,12 @@ class FrameJoiner {
     std::vector<bool> arrived;
   };
 
-  int num_inputs_;
+  /// Whether nothing older than or equal to `key` can come on the channel of `input` any more.
+  bool IsOvertaken(std::size_t input, const Key& key) const;
+  /// Whether a frame between the last one that is done and `key` could still appear.
+  bool MayHavePredecessor(const Key& key) const;
+
+  std::size_t num_inputs_;
   std::int64_t reorder_window_;
   std::vector<std::int64_t> sessions_;      // in order of appearance
   std::vector<std::optional<Key>> newest_;  // per input

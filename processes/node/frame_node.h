@@ -24,7 +24,11 @@ namespace airdos {
 template <class Inputs>
 class FrameNode : public Node {
  public:
-  static constexpr int kReorderWindow = 1;
+  /// A channel has one publisher and LCM keeps its order, so whoever is overtaken is lost. Waiting
+  /// for a swapped message would close a circle with the feedback of the optimizer: a lost message
+  /// of frame k could be given up only when frame k + 1 + window is there, and that frame waits
+  /// for the result of frame k.
+  static constexpr int kReorderWindow = 0;
   /// Frames that may wait at once; the oldest is worked on incomplete beyond it, so memory stays
   /// bounded.
   static constexpr std::size_t kMaxPending = 1000;
@@ -89,37 +93,37 @@ class FrameNode : public Node {
   }
 
   /// One or more messages of the channel for each frame, numbered by `part` and `num_parts`; handed
-  /// over in order of `part`.
+  /// over in order of `part` once all are there. Only one set is kept: the first part of a later
+  /// frame gives up what is incomplete.
   template <class Message>
   void JoinParts(const std::string& channel, std::vector<Message> Inputs::*field) {
     const int input = AddInput(channel);
-    Subscribe<Message>(channel, [this, input, channel, field](Message&& message) {
+    const auto set = std::make_shared<PartSet<Message>>();
+    Subscribe<Message>(channel, [this, input, channel, field, set](Message&& message) {
       const Header header = HeaderOf(message);
-      std::map<int, Message>& parts = PartsOf<Message>(channel)[{header.session, header.seq}];
-      const int num_parts = message.num_parts;
-      const int part = message.part;
-      parts[part] = std::move(message);
-      if (static_cast<int>(parts.size()) < num_parts) return std::string();
-      Arrived(input, channel, header, [&](Inputs& inputs) {
-        for (auto& [number, content] : parts) (inputs.*field).push_back(std::move(content));
+      FrameJoiner::Key key;
+      if (Joiner().Announce(input, header, &key) != FrameJoiner::Arrival::kNew) {
+        ++counters(channel).num_duplicate;
+        return std::string();
+      }
+      if (set->parts.empty() || set->key < key || key < set->key) *set = {key, {}};
+      return AddPart(std::move(message), set.get(), [&](std::vector<Message>&& parts) {
+        Arrived(input, channel, header, [&](Inputs& inputs) { inputs.*field = std::move(parts); });
       });
-      // What is older can only be incomplete.
-      auto& all = PartsOf<Message>(channel);
-      all.erase(all.begin(), std::next(all.find({header.session, header.seq})));
-      return std::string();
     });
   }
 
   /// Frames wait for the calibration of their session; ProcessFrame() then finds it in camera().
+  /// The first one of a session holds for all of it, frames before it included: if it could
+  /// change, which frames it holds for would depend on how fast it travels. Another one is
+  /// rejected.
   void JoinCalibration() {
     needs_calibration_ = true;
     Subscribe<stereo_calibration_t>(channel::kCalibration, [this](stereo_calibration_t&& message) {
       const StereoCamera camera = ToStereoCamera(message);
-      auto& history = calibrations_[message.session];
-      const auto after = history.upper_bound(message.seq);
-      if (after != history.begin() && std::prev(after)->second == camera) return std::string();
-      history[message.seq] = camera;
-      return std::string();
+      const auto [known, is_new] = calibrations_.try_emplace(message.session, camera);
+      if (is_new || known->second == camera) return std::string();
+      return std::string("calibration changes within a session");
     });
   }
 
@@ -135,13 +139,27 @@ class FrameNode : public Node {
 
  private:
   template <class Message>
-  using Parts = std::map<std::pair<std::int64_t, std::int64_t>, std::map<int, Message>>;
+  struct PartSet {
+    FrameJoiner::Key key;
+    std::map<int, Message> parts;
+  };
 
-  template <class Message>
-  Parts<Message>& PartsOf(const std::string& channel) {
-    std::shared_ptr<void>& parts = parts_[channel];
-    if (parts == nullptr) parts = std::make_shared<Parts<Message>>();
-    return *static_cast<Parts<Message>*>(parts.get());
+  template <class Message, class Deliver>
+  std::string AddPart(Message&& message, PartSet<Message>* set, Deliver deliver) {
+    const int part = message.part;
+    const int num_parts = message.num_parts;
+    if (!set->parts.empty() && set->parts.begin()->second.num_parts != num_parts) {
+      return "num_parts " + std::to_string(num_parts) + " differs from that of another part";
+    }
+    if (!set->parts.emplace(part, std::move(message)).second) {
+      return "part " + std::to_string(part) + " came twice";
+    }
+    if (static_cast<int>(set->parts.size()) < num_parts) return "";
+    std::vector<Message> parts;
+    for (auto& [number, content] : set->parts) parts.push_back(std::move(content));
+    set->parts.clear();
+    deliver(std::move(parts));
+    return "";
   }
 
   int AddInput(const std::string& channel) {
@@ -168,16 +186,8 @@ class FrameNode : public Node {
     }
   }
 
-  const StereoCamera* CalibrationOf(const Header& header) const {
-    const auto history = calibrations_.find(header.session);
-    if (history == calibrations_.end()) return nullptr;
-    const auto after = history->second.upper_bound(header.seq);
-    // A calibration that came late holds for the frames before it as well: it is the first that is
-    // known.
-    return after == history->second.begin() ? &after->second : &std::prev(after)->second;
-  }
   bool HasCalibration(const Header& header) const {
-    return !needs_calibration_ || CalibrationOf(header) != nullptr;
+    return !needs_calibration_ || calibrations_.count(header.session) > 0;
   }
 
   void Work(const FrameJoiner::Frame& frame) {
@@ -185,6 +195,7 @@ class FrameNode : public Node {
     inputs_.erase(frame.key);
     std::int64_t num_absent = 0;
     Joiner().FinishOldest(&num_absent);
+    set_last_finished(frame.header);
     for (const std::string& channel : channels_of_inputs_)
       counters(channel).num_missing += num_absent;
     for (const int input : frame.missing) {
@@ -193,8 +204,9 @@ class FrameNode : public Node {
     if (!frame.missing.empty() || !HasCalibration(frame.header)) ++mutable_frames().num_incomplete;
     if (!HasCalibration(frame.header)) return;  // without it no pixel has a meaning
     ++mutable_frames().num_done;
-    if (needs_calibration_) camera_ = *CalibrationOf(frame.header);
+    if (needs_calibration_) camera_ = calibrations_.at(frame.header.session);
     if (!session_ || *session_ != frame.header.session) {
+      if (session_) calibrations_.erase(*session_);
       session_ = frame.header.session;
       StartSession(frame.header);
     }
@@ -204,10 +216,8 @@ class FrameNode : public Node {
   std::vector<std::string> channels_of_inputs_;
   std::unique_ptr<FrameJoiner> joiner_;
   std::map<FrameJoiner::Key, Inputs> inputs_;
-  std::map<std::string, std::shared_ptr<void>> parts_;
   bool needs_calibration_ = false;
-  std::map<std::int64_t, std::map<std::int64_t, StereoCamera>>
-      calibrations_;  // by session, then first seq
+  std::map<std::int64_t, StereoCamera> calibrations_;  // by session
   StereoCamera camera_;
   std::optional<std::int64_t> session_;
 };

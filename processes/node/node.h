@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "processes/node/codec.h"
+#include "processes/node/header.h"
 #include "processes/node/validate.h"
 
 namespace airdos {
@@ -67,6 +69,8 @@ class Node {
 
   const std::map<std::string, ChannelCounters>& channels() const { return channels_; }
   const FrameCounters& frames() const { return frames_; }
+  /// The frame that Step() or CompleteOldest() worked on last; nothing before the first one.
+  const std::optional<Header>& last_finished() const { return last_finished_; }
 
  protected:
   /// `handler` returns why it rejects the message, or an empty text. Messages that fail Validate()
@@ -89,6 +93,7 @@ class Node {
 
   ChannelCounters& counters(const std::string& channel) { return channels_[channel]; }
   FrameCounters& mutable_frames() { return frames_; }
+  void set_last_finished(const Header& header) { last_finished_ = header; }
 
  private:
   using Handler = std::function<std::string(const void*, std::size_t)>;
@@ -97,6 +102,7 @@ class Node {
   std::map<std::string, Handler> handlers_;
   std::map<std::string, ChannelCounters> channels_;
   FrameCounters frames_;
+  std::optional<Header> last_finished_;
   std::vector<Envelope> output_;
 };
 

@@ -1,0 +1,84 @@
+#include "common/dataset/folder_sequence.h"
+
+#include <filesystem>
+
+#include "common/dataset/sequence_files.h"
+#include "common/util/check.h"
+#include "common/util/error.h"
+
+namespace airdos {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kAssumedPeriodUs = 100000;  // both public sets run at 10 Hz
+
+void CheckSameNames(const FolderSequence::Contents& contents) {
+  const std::string left = contents.folder + "/" + contents.left_folder;
+  const std::string right = contents.folder + "/" + contents.right_folder;
+  if (contents.left_names.empty()) throw InputError(left + ": holds no .png or .jpg image");
+  if (contents.left_names.size() != contents.right_names.size()) {
+    throw InputError(right + ": holds " + std::to_string(contents.right_names.size()) +
+                     " images, but " + left + " holds " +
+                     std::to_string(contents.left_names.size()));
+  }
+  for (std::size_t i = 0; i < contents.left_names.size(); ++i) {
+    if (fs::path(contents.left_names[i]).stem() != fs::path(contents.right_names[i]).stem()) {
+      throw InputError(left + "/" + contents.left_names[i] + ": has no partner in " + right);
+    }
+  }
+}
+
+}  // namespace
+
+FolderSequence::FolderSequence(Contents contents)
+    : contents_(std::move(contents)),
+      has_people_(fs::is_directory(contents_.folder + "/alphapose_0")) {
+  AIRDOS_CHECK(contents_.left_names.size() == contents_.right_names.size());
+  AIRDOS_CHECK(contents_.left_names.size() == contents_.utimes.size());
+  contents_.ground_truth.resize(contents_.left_names.size());
+}
+
+SequenceFrame FolderSequence::Load(std::size_t index) const {
+  AIRDOS_CHECK(index < num_frames());
+  const std::string& folder = contents_.folder;
+  const std::string stem = fs::path(contents_.left_names[index]).stem().string();
+  SequenceFrame frame;
+  frame.utime = contents_.utimes[index];
+  frame.left_image_file =
+      ReadImageFile(folder + "/" + contents_.left_folder + "/" + contents_.left_names[index]);
+  frame.right_image_file =
+      ReadImageFile(folder + "/" + contents_.right_folder + "/" + contents_.right_names[index]);
+  const std::string mask = folder + "/rcnnseg_image_0/" + stem + ".png";
+  if (fs::exists(mask)) frame.person_mask_file = ReadImageFile(mask);
+  frame.keypoints_left = ReadKeypoints(folder + "/alphapose_0/" + stem + ".txt");
+  frame.keypoints_right = ReadKeypoints(folder + "/alphapose_1/" + stem + ".txt");
+  frame.ground_truth = contents_.ground_truth[index];
+  return frame;
+}
+
+void FillImagesAndTimes(FolderSequence::Contents* contents) {
+  contents->left_names = ListImages(contents->folder + "/" + contents->left_folder);
+  contents->right_names = ListImages(contents->folder + "/" + contents->right_folder);
+  CheckSameNames(*contents);
+
+  const std::size_t num_images = contents->left_names.size();
+  const std::string path = contents->folder + "/times.txt";
+  if (!fs::exists(path)) {
+    contents->notes.push_back(path + " is not there: the images are taken to be 0.1 s apart");
+    for (std::size_t i = 0; i < num_images; ++i) {
+      contents->utimes.push_back(static_cast<std::int64_t>(i) * kAssumedPeriodUs);
+    }
+    return;
+  }
+  contents->utimes = ReadTimes(path);
+  const std::string counts = path + ": holds " + std::to_string(contents->utimes.size()) +
+                             " times for " + std::to_string(num_images) + " images";
+  if (contents->utimes.size() < num_images) throw InputError(counts);
+  if (contents->utimes.size() > num_images) {
+    contents->notes.push_back(counts + ": the last ones are not used");
+    contents->utimes.resize(num_images);
+  }
+}
+
+}  // namespace airdos

@@ -1,0 +1,51 @@
+# Rewrites one C++ header that lcm-gen made, so that its decode() checks every count against the bytes that are left before it
+# makes room for it. As generated, a packet of 61 bytes that announces 2^31 - 1 elements costs 15 s and 2 GB, and a negative
+# count throws. Usage: cmake -DHEADER=x_t.hpp -DSOURCE=x_t.lcm -P bound_decode.cmake
+# Fails unless every array and string of the type was found, so that another lcm-gen cannot pass unnoticed.
+file(READ ${HEADER} text)
+file(READ ${SOURCE} source)
+
+function(count_matches pattern content result)
+  string(REGEX MATCHALL "${pattern}" matches "${content}")
+  list(LENGTH matches length)
+  set(${result} ${length} PARENT_SCOPE)
+endfunction()
+
+set(name "[A-Za-z0-9_]+")
+set(index "(\\[a[0-9]\\])*")
+set(fails "return -1;  // bounded by bound_decode.cmake\n")
+
+# Strings: the length counts the closing zero, so it is at least 1.
+string(REGEX REPLACE "if\\((__${name}_len__) > maxlen - pos\\) return -1;\n"
+                     "if(\\1 < 1 || \\1 > maxlen - pos) ${fails}" text "${text}")
+# Rows of numbers, also the inner ones of a table: the elements are in the message one after the other.
+string(REGEX REPLACE
+  "(this->${name}${index})\\.resize\\(([^()]+)\\);(\n *tlen = __${name}_decode_array)"
+  "if((\\3) < 0 || (\\3) > (maxlen - pos) / (int)sizeof(\\1[0])) ${fails}            \\1.resize(\\3);\\4" text "${text}")
+# Tables: no more rows than bytes for them.
+string(REGEX REPLACE
+  "(this->${name})\\.resize\\(([^()]+)\\);(\n *for \\([^\n]*\n *if\\()([^()]+)(\\) {)"
+  "if((\\2) < 0 || (\\4) < 0 || (int64_t)(\\2) * ((\\4) > 0 ? (\\4) : 1) > (maxlen - pos) / (int)sizeof(\\1[0][0])) ${fails}    \\1.resize(\\2);\\3\\4\\5"
+  text "${text}")
+# Structures: the smallest one has all counts zero and all texts empty.
+string(REGEX REPLACE
+  "(this->(${name}))\\.resize\\(([^()]+)\\);(\n *for \\([^\n]*\n *tlen = this->${name}\\[a0\\]\\._decodeNoHash)"
+  "if((\\3) < 0 || (\\3) > (maxlen - pos) / decltype(this->\\2)::value_type{}._getEncodedSizeNoHash()) ${fails}    \\1.resize(\\3);\\4"
+  text "${text}")
+
+string(REGEX REPLACE "//[^\n]*" "" fields "${source}")
+count_matches("\n *${name} +${name}\\[num_[a-z_]+\\]" "${fields}" num_arrays)
+count_matches("\n *${name} +${name}\\[num_[a-z_]+\\]\\[[0-9a-z_]+\\]" "${fields}" num_tables)
+count_matches("\n *string " "${fields}" num_strings)
+# A table makes room twice, for its rows and in each row, and each has its check.
+math(EXPR expected "${num_arrays} + ${num_tables} + ${num_strings}")
+count_matches("bounded by bound_decode" "${text}" num_checks)
+count_matches("\\.resize\\(" "${text}" num_resizes)
+count_matches("\\.assign\\(" "${text}" num_assigns)
+math(EXPR num_unsafe "${num_resizes} + ${num_assigns}")
+if(NOT num_checks EQUAL expected OR NOT num_checks EQUAL num_unsafe)
+  file(REMOVE ${HEADER})
+  message(FATAL_ERROR "${SOURCE}: ${expected} arrays and strings, ${num_unsafe} places that make room, but ${num_checks} of "
+                      "them could be bounded: lcm-gen writes another form than bound_decode.cmake knows")
+endif()
+file(WRITE ${HEADER} "${text}")

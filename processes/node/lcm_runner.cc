@@ -1,0 +1,202 @@
+#include "processes/node/lcm_runner.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <exception>
+#include <sstream>
+
+#include "airdos/frame_done_t.hpp"
+#include "airdos/process_status_t.hpp"
+#include "common/util/version.h"
+#include "processes/node/channels.h"
+
+namespace airdos {
+namespace {
+
+constexpr int kPollTimeout_ms = 50;
+constexpr double kStatusPeriod_s = 1.0;
+
+channel_status_t StatusOf(const std::string& channel, const ChannelCounters& counters) {
+  channel_status_t status = {};
+  status.channel = channel;
+  status.num_received = counters.num_received;
+  status.num_missing = counters.num_missing;
+  status.num_duplicate = counters.num_duplicate;
+  status.num_rejected = counters.num_rejected;
+  status.last_reject = counters.last_reject;
+  return status;
+}
+
+}  // namespace
+
+LcmRunner::LcmRunner(Node* node, LcmTransport* transport, const LcmRunnerOptions& options,
+                     std::ostream* log)
+    : node_(node), transport_(transport), options_(options), log_(log) {}
+
+void LcmRunner::Start() {
+  for (const std::string& channel : node_->input_channels()) {
+    transport_->Subscribe(
+        channel, [this, channel](const void* data, std::size_t size, std::int64_t receive_utime) {
+          node_->Receive(channel, data, size);
+          last_receive_utime_ = receive_utime;
+        });
+  }
+}
+
+void LcmRunner::Run() {
+  cpu_at_start_ms_ = CpuTime_ms();
+  progress_s_ = SteadyClock_s();
+  bool has_worked = false;
+  while (!StopRequested()) {
+    PublishStatusWhenDue();
+    Receive(has_worked ? 0 : kPollTimeout_ms);
+    has_worked = WorkOnFrames();
+    CompleteAfterDeadline();
+  }
+  PublishStatus(process_status_t::STATE_STOPPING);
+  SayCounters();
+}
+
+void LcmRunner::Receive(int timeout_ms) {
+  const bool is_realtime = options_.pace == LcmRunnerOptions::Pace::kRealtime;
+  // In lock-step one message at a time, so that the time of the last one is that of the input which
+  // made the frame complete.
+  if (!transport_->Poll(timeout_ms) || !is_realtime) return;
+  while (!StopRequested() && transport_->Poll(0)) {
+  }
+  node_->SkipToNewest();
+}
+
+bool LcmRunner::WorkOnFrames() {
+  // In realtime one at a time: there may be newer ones by now.
+  if (options_.pace == LcmRunnerOptions::Pace::kRealtime) return WorkOnOne();
+  bool has_worked = false;
+  while (!StopRequested() && WorkOnOne()) {
+    has_worked = true;
+    PublishStatusWhenDue();
+  }
+  return has_worked;
+}
+
+bool LcmRunner::WorkOnOne() {
+  bool has_worked = true;
+  try {
+    has_worked = node_->Step();
+  } catch (const std::exception& error) {
+    // The frame is over for the node; the next one may be better.
+    last_error_ = error.what();
+    Say("error: " + last_error_);
+  }
+  if (has_worked) PublishOutput();
+  if (has_worked || node_->num_pending() == 0) {
+    progress_s_ = SteadyClock_s();
+    is_stalled_ = false;
+  }
+  return has_worked;
+}
+
+void LcmRunner::CompleteAfterDeadline() {
+  if (node_->num_pending() == 0 || SteadyClock_s() - progress_s_ < options_.deadline_s) return;
+  const std::string silent = node_->waiting_for();
+  is_stalled_ = true;
+  if (silent_said_.insert(silent).second) {
+    std::ostringstream line;
+    line << "nothing on " << silent << " for " << options_.deadline_s
+         << " s: frames are completed without it";
+    Say(line.str());
+  }
+  PublishStatus(process_status_t::STATE_STALLED);  // while waiting_for() still names the channels
+  try {
+    node_->CompleteOldest();
+  } catch (const std::exception& error) {
+    last_error_ = error.what();
+    Say("error: " + last_error_);
+  }
+  PublishOutput();
+  progress_s_ = SteadyClock_s();
+}
+
+void LcmRunner::PublishOutput() {
+  for (const Envelope& message : node_->TakeOutput()) {
+    PublishBytes(message.channel, message.payload);
+  }
+  latency_ms_.Add(std::max(0.0, 1e-3 * static_cast<double>(WallClock_us() - last_receive_utime_)));
+  if (options_.publishes_frame_done) PublishFrameDone();
+}
+
+void LcmRunner::PublishFrameDone() {
+  if (!node_->last_finished()) return;
+  frame_done_t message = {};
+  message.utime = node_->last_finished()->utime;
+  message.seq = node_->last_finished()->seq;
+  message.session = node_->last_finished()->session;
+  message.process = options_.process;
+  Publish(channel::kFrameDone, message);
+}
+
+void LcmRunner::PublishStatusWhenDue() {
+  const double now_s = SteadyClock_s();
+  if (now_s < next_status_s_) return;
+  next_status_s_ = now_s + kStatusPeriod_s;
+  PublishStatus(is_stalled_ ? process_status_t::STATE_STALLED : process_status_t::STATE_READY);
+}
+
+void LcmRunner::PublishStatus(std::int8_t state) {
+  process_status_t status = {};
+  if (node_->last_finished()) {
+    status.utime = node_->last_finished()->utime;
+    status.seq = node_->last_finished()->seq;
+    status.session = node_->last_finished()->session;
+  }
+  status.process = options_.process;
+  status.version = kVersion;
+  status.pid = getpid();
+  status.state = state;
+  status.num_frames_done = node_->frames().num_done;
+  status.num_frames_incomplete = node_->frames().num_incomplete;
+  status.num_frames_skipped = node_->frames().num_skipped;
+  status.latency_p50_ms = latency_ms_.Percentile(0.50);
+  status.latency_p99_ms = latency_ms_.Percentile(0.99);
+  const auto num_done = static_cast<double>(std::max<std::int64_t>(1, node_->frames().num_done));
+  status.cpu_ms_per_frame = (CpuTime_ms() - cpu_at_start_ms_) / num_done;
+  status.memory_mb = ResidentMemory_mb();
+  status.waiting_for = node_->waiting_for();
+  status.last_error = last_error_;
+  for (const auto& [channel, counters] : node_->channels()) {
+    status.channels.push_back(StatusOf(channel, counters));
+  }
+  status.num_channels = static_cast<std::int32_t>(status.channels.size());
+  Publish(channel::kStatus, status);
+}
+
+template <class Message>
+void LcmRunner::Publish(const std::string& channel, const Message& message) {
+  PublishBytes(channel, Encode(message));
+}
+
+void LcmRunner::PublishBytes(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
+  if (transport_->Publish(channel, bytes.data(), bytes.size())) return;
+  last_error_ = "cannot publish on " + channel;
+  if (!publish_failure_said_) Say(last_error_ + ": is the network gone?");
+  publish_failure_said_ = true;
+}
+
+void LcmRunner::Say(const std::string& line) {
+  *log_ << options_.process << ": " << line << std::endl;
+}
+
+void LcmRunner::SayCounters() {
+  const FrameCounters& frames = node_->frames();
+  Say("stopped; frames done " + std::to_string(frames.num_done) + ", incomplete " +
+      std::to_string(frames.num_incomplete) + ", skipped " + std::to_string(frames.num_skipped));
+  for (const auto& [channel, counters] : node_->channels()) {
+    Say(channel + ": received " + std::to_string(counters.num_received) + ", missing " +
+        std::to_string(counters.num_missing) + ", duplicate " +
+        std::to_string(counters.num_duplicate) + ", rejected " +
+        std::to_string(counters.num_rejected) +
+        (counters.last_reject.empty() ? "" : " (" + counters.last_reject + ")"));
+  }
+}
+
+}  // namespace airdos

@@ -1,0 +1,72 @@
+#ifndef AIRDOS_PROCESSES_NODE_LCM_RUNNER_H_
+#define AIRDOS_PROCESSES_NODE_LCM_RUNNER_H_
+
+#include <cstdint>
+#include <ostream>
+#include <set>
+#include <string>
+
+#include "processes/node/lcm_transport.h"
+#include "processes/node/node.h"
+#include "processes/node/process_usage.h"
+
+namespace airdos {
+
+struct LcmRunnerOptions {
+  enum class Pace {
+    kLockstep,  ///< every frame is worked on; the source waits for FRAME_DONE
+    kRealtime,  ///< whoever falls behind goes on with the newest complete frame
+  };
+  std::string process;  ///< name in STATUS and FRAME_DONE
+  Pace pace = Pace::kLockstep;
+  double deadline_s = 5;              ///< a frame that lacks inputs for longer is completed without
+  bool publishes_frame_done = false;  ///< says FRAME_DONE after each frame
+};
+
+/// Runs one node behind LCM until SIGINT or SIGTERM: hands in what arrives, publishes what comes
+/// out, says STATUS once a second. All knowledge of clocks and of the network is here.
+class LcmRunner {
+ public:
+  /// Neither is owned. `log` takes what people are to read, one line each.
+  LcmRunner(Node* node, LcmTransport* transport, const LcmRunnerOptions& options,
+            std::ostream* log);
+
+  /// Subscribes. Throws as LcmTransport does.
+  void Start();
+  /// Works until StopRequested().
+  void Run();
+
+ private:
+  void Receive(int timeout_ms);
+  bool WorkOnFrames();
+  bool WorkOnOne();
+  void CompleteAfterDeadline();
+  void PublishOutput();
+  void PublishFrameDone();
+  void PublishStatus(std::int8_t state);
+  void PublishStatusWhenDue();
+  void Say(const std::string& line);
+  void SayCounters();
+  template <class Message>
+  void Publish(const std::string& channel, const Message& message);
+  void PublishBytes(const std::string& channel, const std::vector<std::uint8_t>& bytes);
+
+  Node* node_;
+  LcmTransport* transport_;
+  LcmRunnerOptions options_;
+  std::ostream* log_;
+
+  std::int64_t last_receive_utime_ = 0;
+  double progress_s_ = 0;  // when a frame was finished last or none waited
+  double next_status_s_ = 0;
+  std::set<std::string> silent_said_;  // waiting_for() texts that were said already
+  bool is_stalled_ = false;
+  bool publish_failure_said_ = false;
+  std::string last_error_;
+  RecentValues latency_ms_{100};
+  double cpu_at_start_ms_ = 0;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_NODE_LCM_RUNNER_H_

@@ -1,0 +1,100 @@
+#include "processes/node/log_source.h"
+
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "processes/node/channels.h"
+
+namespace airdos {
+namespace {
+
+template <std::size_t kSize>
+bool Contains(const std::array<const char*, kSize>& channels, const std::string& channel) {
+  for (const char* name : channels) {
+    if (channel == name) return true;
+  }
+  return false;
+}
+
+// A frame of another session is newer, whatever its number.
+bool IsNewer(const Header& a, const Header& b) { return a.session != b.session || a.seq > b.seq; }
+
+}  // namespace
+
+std::optional<Header> PeekHeader(const void* data, std::size_t size) {
+  constexpr std::size_t kFingerprintBytes = 8;
+  if (size < kFingerprintBytes + 24) return std::nullopt;
+  const auto* bytes = static_cast<const std::uint8_t*>(data) + kFingerprintBytes;
+  const auto read = [bytes](std::size_t offset) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < 8; ++i) value = value << 8 | bytes[offset + i];
+    return static_cast<std::int64_t>(value);
+  };
+  return Header{read(0), read(8), read(16)};
+}
+
+bool IsInputChannel(const std::string& name) {
+  static constexpr std::array<const char*, 7> kInputs{
+      channel::kCameraLeft,          channel::kCameraRight,          channel::kCalibration,
+      channel::kPersonKeypointsLeft, channel::kPersonKeypointsRight, channel::kPersonMask,
+      channel::kGroundTruth};
+  return Contains(kInputs, name);
+}
+
+bool IsOutputChannel(const std::string& name) {
+  static constexpr std::array<const char*, 4> kOutputs{
+      channel::kStaticFeatures, channel::kHumanObservations, channel::kStateEstimate,
+      channel::kMapUpdate};
+  return Contains(kOutputs, name);
+}
+
+LogSource::LogSource(const std::string& path, std::int64_t first_seq, std::int64_t last_seq)
+    : reader_(path), first_seq_(first_seq), last_seq_(last_seq) {}
+
+std::optional<LogEvent> LogSource::NextInput(Header* header) {
+  while (std::optional<LogEvent> event = reader_.Next()) {
+    if (!IsInputChannel(event->channel)) continue;
+    const std::optional<Header> peeked = PeekHeader(event->payload.data(), event->payload.size());
+    if (!peeked) {
+      ++num_without_header_;
+      continue;
+    }
+    const bool is_before = peeked->seq < first_seq_ && event->channel != channel::kCalibration;
+    if (is_before || peeked->seq > last_seq_) continue;
+    *header = *peeked;
+    return event;
+  }
+  return std::nullopt;
+}
+
+std::vector<Envelope> LogSource::NextFrame() {
+  std::vector<Envelope> frame;
+  if (!next_) next_ = NextInput(&next_header_);
+  if (!next_) return frame;
+  newest_ = next_header_;
+  do {
+    frame.push_back({std::move(next_->channel), std::move(next_->payload)});
+    next_ = NextInput(&next_header_);
+  } while (next_ && !IsNewer(next_header_, *newest_));
+  return frame;
+}
+
+double LogSource::fraction_done() const {
+  return static_cast<double>(reader_.position_bytes()) / static_cast<double>(reader_.num_bytes());
+}
+
+std::string LogSource::damage() const {
+  std::string text;
+  if (reader_.num_lost() > 0) {
+    text += std::to_string(reader_.num_lost()) + " events lost to damage (" +
+            std::to_string(reader_.num_bytes_skipped()) + " bytes skipped)";
+  }
+  if (num_without_header_ > 0) {
+    text += (text.empty() ? "" : ", ") + std::to_string(num_without_header_) +
+            " messages too short to have a header";
+  }
+  return text;
+}
+
+}  // namespace airdos

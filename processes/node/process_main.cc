@@ -1,0 +1,62 @@
+#include "processes/node/process_main.h"
+
+#include <iostream>
+#include <map>
+#include <opencv2/core/utility.hpp>
+
+#include "common/util/version.h"
+#include "processes/node/lcm_runner.h"
+#include "processes/node/lcm_transport.h"
+#include "processes/node/process_cli.h"
+
+namespace airdos {
+namespace {
+
+constexpr double kLockstepDeadline_s = 5;
+constexpr double kRealtimeDeadline_s = 0.2;
+
+int Run(const ProcessInfo& info, const CommonArguments& arguments, LcmRunnerOptions options) {
+  InstallStopSignals();
+  cv::setNumThreads(1);  // several threads may add in another order
+  ConfigReader config = ReadConfig(arguments);
+  const std::unique_ptr<Node> node = info.make_node(&config);
+  config.Finish();
+  LcmTransport transport(arguments.lcm_url);
+  options.process = info.program;
+  options.publishes_frame_done = info.publishes_frame_done;
+  LcmRunner runner(node.get(), &transport, options, &std::cerr);
+  runner.Start();
+  std::cout << info.program << " READY version " << kVersion << " url " << arguments.lcm_url
+            << " config " << arguments.config_file << std::endl;
+  runner.Run();
+  return 0;
+}
+
+}  // namespace
+
+int RunNodeProcess(int argc, char** argv, const ProcessInfo& info) {
+  using Pace = LcmRunnerOptions::Pace;
+  CLI::App app(info.description, info.program);
+  CommonArguments arguments;
+  AddCommonOptions(info.config_name, &app, &arguments);
+  LcmRunnerOptions options;
+  app.add_option("--pace", options.pace,
+                 "lockstep: every frame is worked on; realtime: the newest one")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Pace>{
+          {"lockstep", Pace::kLockstep}, {"realtime", Pace::kRealtime}}))
+      ->default_str("lockstep");
+  CLI::Option* deadline =
+      app.add_option("--deadline-s", options.deadline_s,
+                     "A frame that lacks inputs for longer is completed without (s); default " +
+                         std::string("5 in lockstep, 0.2 in realtime"))
+          ->check(CLI::Range(1e-3, 1e6));
+  return RunProgram(argc, argv, &app, [&] {
+    if (deadline->count() == 0) {
+      options.deadline_s =
+          options.pace == Pace::kLockstep ? kLockstepDeadline_s : kRealtimeDeadline_s;
+    }
+    return Run(info, arguments, options);
+  });
+}
+
+}  // namespace airdos

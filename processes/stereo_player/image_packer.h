@@ -1,0 +1,47 @@
+#ifndef AIRDOS_PROCESSES_STEREO_PLAYER_IMAGE_PACKER_H_
+#define AIRDOS_PROCESSES_STEREO_PLAYER_IMAGE_PACKER_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "airdos/image_t.hpp"
+
+namespace airdos {
+
+struct ImagePackerOptions {
+  enum class Encoding {
+    kAuto,  ///< a file that fits travels unchanged, any other becomes a JPEG
+    kJpeg,  ///< JPEG always; a JPEG file that fits travels unchanged
+    kPng,   ///< lossless always, whatever the size
+  };
+  Encoding encoding = Encoding::kAuto;
+  int max_image_bytes = 120000;
+  std::vector<int> jpeg_qualities = {95, 92, 90, 85, 80, 70, 60, 50, 40, 30};  ///< tried in order
+};
+
+/// Puts image files into messages so that each message is small enough to travel without loss.
+class ImagePacker {
+ public:
+  explicit ImagePacker(const ImagePackerOptions& options) : options_(options) {}
+
+  /// `file` is a whole JPEG or PNG file, `name` says which one in errors. Sets size, encoding and
+  /// data. Throws InputError if the file cannot be decoded or no quality makes it fit.
+  void Pack(const std::vector<std::uint8_t>& file, const std::string& name, image_t* message);
+
+  /// What people should know about the images that were packed so far, a line each; given once.
+  std::vector<std::string> TakeNotes();
+
+ private:
+  void Note(const std::string& note);
+  bool PackUnchanged(const std::vector<std::uint8_t>& file, image_t* message);
+
+  ImagePackerOptions options_;
+  std::vector<std::string> notes_;
+  std::vector<std::string> said_;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_STEREO_PLAYER_IMAGE_PACKER_H_

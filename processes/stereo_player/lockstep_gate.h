@@ -1,0 +1,75 @@
+#ifndef AIRDOS_PROCESSES_STEREO_PLAYER_LOCKSTEP_GATE_H_
+#define AIRDOS_PROCESSES_STEREO_PLAYER_LOCKSTEP_GATE_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "airdos/frame_done_t.hpp"
+#include "airdos/process_status_t.hpp"
+
+namespace airdos {
+
+struct LockstepGateOptions {
+  std::vector<std::string> wait_for;  ///< names of processes as in STATUS; empty: never waits
+  int frames_in_flight = 4;
+  double remind_s = 5;        ///< how often a silent process is named
+  double silence_s = 10;      ///< neither STATUS nor FRAME_DONE for longer: goes on without it
+  double no_progress_s = 60;  ///< STATUS but no FRAME_DONE for longer: goes on
+  double start_s = 60;        ///< a process that is not there at the start
+};
+
+/// Decides when the player may publish the next frame: all processes that it waits for have said
+/// READY, and none has more than `frames_in_flight` frames to do. Every wait is bounded; whenever
+/// it gives one up it says so. Has no clock: times are handed in, in seconds of one steady clock.
+class LockstepGate {
+ public:
+  LockstepGate(const LockstepGateOptions& options, double now_s);
+
+  void OnStatus(const process_status_t& status, double now_s);
+  void OnFrameDone(const frame_done_t& done, double now_s);
+  void OnPublished(std::int64_t session, std::int64_t seq, double now_s);
+
+  /// Whether the next frame may be published; gives up waits that took too long.
+  bool MayPublish(double now_s);
+  /// Whether every process has done every frame that was published, or was given up.
+  bool IsAllDone(double now_s);
+
+  /// What people should know, a line each; given once.
+  std::vector<std::string> TakeNotes();
+  /// A process came back: it has missed the calibration. True once for each time.
+  bool TakeNewcomer();
+
+ private:
+  enum class State { kAbsent, kPresent, kGivenUp };
+  struct Process {
+    State state = State::kAbsent;
+    std::int64_t pid = 0;
+    double heard_s = 0;     // STATUS or FRAME_DONE
+    double progress_s = 0;  // FRAME_DONE, or nothing to do
+    double reminded_s = 0;
+    std::size_t num_in_flight = 0;  // oldest ones are dropped from the front of published_
+  };
+  struct Published {
+    std::int64_t session;
+    std::int64_t seq;
+  };
+
+  void CheckWaits(double now_s);
+  void CheckWait(const std::string& name, Process* process, double now_s);
+  void GiveUp(const std::string& name, const std::string& why, Process* process, double now_s);
+  void Note(const std::string& line) { notes_.push_back(line); }
+
+  LockstepGateOptions options_;
+  double start_s_;
+  std::map<std::string, Process> processes_;
+  std::vector<Published> published_;  // all frames, in order
+  std::vector<std::string> notes_;
+  bool has_newcomer_ = false;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_STEREO_PLAYER_LOCKSTEP_GATE_H_

@@ -1,0 +1,86 @@
+#include "processes/stereo_player/player_options.h"
+
+#include <map>
+#include <sstream>
+#include <vector>
+
+#include "common/util/error.h"
+
+namespace airdos {
+namespace {
+
+std::vector<std::string> SplitAtCommas(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    if (!part.empty()) parts.push_back(part);
+  }
+  return parts;
+}
+
+std::vector<int> ToQualities(const std::string& text) {
+  std::vector<int> qualities;
+  for (const std::string& part : SplitAtCommas(text)) {
+    std::istringstream stream(part);
+    int quality = 0;
+    if (!(stream >> quality) || !stream.eof() || quality < 1 || quality > 100) {
+      throw InputError("image.jpeg_qualities with value '" + text +
+                       "': must be whole numbers of 1 to 100, separated by commas");
+    }
+    qualities.push_back(quality);
+  }
+  if (qualities.empty()) throw InputError("image.jpeg_qualities: must not be empty");
+  return qualities;
+}
+
+}  // namespace
+
+PlayerArguments::PlayerArguments(CLI::App* app) {
+  using Encoding = ImagePackerOptions::Encoding;
+  AddCommonOptions("stereo_player", app, &common_);
+  app->add_option("--data", options_.data_folder,
+                  "Folder of the sequence (TartanAir-Shibuya or KITTI odometry layout)")
+      ->required();
+  app->add_option("--first", options_.first, "First frame")->check(CLI::NonNegativeNumber);
+  app->add_option("--last", options_.last, "Last frame, included")->check(CLI::NonNegativeNumber);
+  app->add_option("--session", options_.session, "Session number; default: the wall clock in us");
+  app->add_option("--loop", options_.num_loops, "How often to play, each a session; 0: for ever")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app->add_option("--pace", options_.pace, "lockstep: nothing is ever lost; realtime: like cameras")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, PlayerPace>{
+          {"lockstep", PlayerPace::kLockstep}, {"realtime", PlayerPace::kRealtime}}))
+      ->default_str("lockstep");
+  app->add_option("--rate", options_.rate, "realtime: speed relative to the recording")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-3, 1e3));
+  app->add_option("--wait-for", wait_for_,
+                  "Processes that must be READY and keep up, separated by commas; none: nobody");
+  app->add_option("--frames-in-flight", frames_in_flight_, "lockstep: frames on their way at once")
+      ->check(CLI::Range(1, 1000));
+  app->add_option("--image-encoding", options_.image.encoding,
+                  "auto: files that fit unchanged, else JPEG; png: lossless, whatever the size")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Encoding>{
+          {"auto", Encoding::kAuto}, {"jpeg", Encoding::kJpeg}, {"png", Encoding::kPng}}))
+      ->default_str("auto");
+  app->add_option("--write-log", options_.write_log,
+                  "Write an LCM log of exactly these messages instead of publishing them");
+}
+
+PlayerOptions PlayerArguments::Resolve() const {
+  PlayerOptions options = options_;
+  ConfigReader config = ReadConfig(common_);
+  std::string wait_for, qualities;
+  config.Read("lockstep.wait_for", &wait_for);
+  config.Read("lockstep.frames_in_flight", &options.gate.frames_in_flight, 1, 1000);
+  config.Read("image.max_image_bytes", &options.image.max_image_bytes, 1000, 100000000);
+  config.Read("image.jpeg_qualities", &qualities);
+  config.Finish();
+  options.image.jpeg_qualities = ToQualities(qualities);
+  if (wait_for_) wait_for = *wait_for_ == "none" ? "" : *wait_for_;
+  options.gate.wait_for = SplitAtCommas(wait_for);
+  if (frames_in_flight_) options.gate.frames_in_flight = *frames_in_flight_;
+  return options;
+}
+
+}  // namespace airdos

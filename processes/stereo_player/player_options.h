@@ -1,0 +1,48 @@
+#ifndef AIRDOS_PROCESSES_STEREO_PLAYER_PLAYER_OPTIONS_H_
+#define AIRDOS_PROCESSES_STEREO_PLAYER_PLAYER_OPTIONS_H_
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "processes/node/process_cli.h"
+#include "processes/stereo_player/image_packer.h"
+#include "processes/stereo_player/lockstep_gate.h"
+
+namespace airdos {
+
+enum class PlayerPace { kLockstep, kRealtime };
+
+/// What the player is asked to do.
+struct PlayerOptions {
+  std::string data_folder;
+  std::int64_t first = 0;
+  std::optional<std::int64_t> last;     ///< included; without: the last one there is
+  std::optional<std::int64_t> session;  ///< without: the wall clock, us
+  int num_loops = 1;                    ///< 0: until stopped; each loop is a session of its own
+  PlayerPace pace = PlayerPace::kLockstep;
+  double rate = 1;        ///< realtime: capture time that passes in a second
+  std::string write_log;  ///< file to write instead of publishing
+  LockstepGateOptions gate;
+  ImagePackerOptions image;
+};
+
+/// The command line, and where it says nothing the configuration file.
+class PlayerArguments {
+ public:
+  explicit PlayerArguments(CLI::App* app);
+  /// After parsing. Throws InputError.
+  PlayerOptions Resolve() const;
+  const CommonArguments& common() const { return common_; }
+
+ private:
+  CommonArguments common_;
+  PlayerOptions options_;
+  std::optional<std::string> wait_for_;
+  std::optional<int> frames_in_flight_;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_STEREO_PLAYER_PLAYER_OPTIONS_H_

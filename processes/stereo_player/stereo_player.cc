@@ -1,0 +1,126 @@
+#include "processes/stereo_player/stereo_player.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "airdos/person_keypoints_t.hpp"
+#include "airdos/person_mask_t.hpp"
+#include "airdos/pose_t.hpp"
+#include "airdos/stereo_calibration_t.hpp"
+#include "common/util/error.h"
+#include "processes/node/channels.h"
+#include "processes/node/conversions.h"
+
+namespace airdos {
+namespace {
+
+constexpr std::int64_t kCalibrationPeriod_us = 1000000;
+
+template <class Message>
+Message MessageOf(const Header& header) {
+  Message message = {};
+  message.utime = header.utime;
+  message.seq = header.seq;
+  message.session = header.session;
+  return message;
+}
+
+/// Throws where a receiver would reject the message: the data set is to blame, not the network.
+template <class Message>
+Envelope Pack(const std::string& channel, const Message& message) {
+  const std::string reason = Validate(message);
+  if (!reason.empty()) {
+    throw InputError("frame " + std::to_string(message.seq) + " for " + channel + ": " + reason);
+  }
+  return {channel, Encode(message)};
+}
+
+Envelope PackKeypoints(const std::string& channel, const Header& header,
+                       const std::vector<PersonKeypoints>& people) {
+  auto message = MessageOf<person_keypoints_t>(header);
+  message.layout = person_keypoints_t::LAYOUT_COCO18;
+  message.num_people = static_cast<std::int32_t>(people.size());
+  message.num_joints = static_cast<std::int32_t>(PersonKeypoints().size());
+  for (const PersonKeypoints& person : people) {
+    std::vector<float> u_px, v_px, confidence;
+    for (const Keypoint& keypoint : person) {
+      u_px.push_back(keypoint.u_px);
+      v_px.push_back(keypoint.v_px);
+      // Detectors give scores slightly above 1.
+      confidence.push_back(std::min(1.0F, std::max(0.0F, keypoint.confidence)));
+    }
+    message.u_px.push_back(u_px);
+    message.v_px.push_back(v_px);
+    message.confidence.push_back(confidence);
+  }
+  return Pack(channel, message);
+}
+
+Envelope PackMask(const Header& header, const StereoCamera& camera,
+                  std::vector<std::uint8_t> file) {
+  auto message = MessageOf<person_mask_t>(header);
+  message.encoding = file.empty() ? person_mask_t::ENCODING_NONE : person_mask_t::ENCODING_PNG;
+  message.width = camera.width;
+  message.height = camera.height;
+  message.num_bytes = static_cast<std::int32_t>(file.size());
+  message.data = std::move(file);
+  return Pack(channel::kPersonMask, message);
+}
+
+Envelope PackGroundTruth(const Header& header, const Se3& pose, TrajectoryAxes axes) {
+  auto message = MessageOf<pose_t>(header);
+  message.axes = axes == TrajectoryAxes::kOptical ? pose_t::AXES_OPTICAL
+                 : axes == TrajectoryAxes::kNed   ? pose_t::AXES_NED
+                                                  : pose_t::AXES_UNKNOWN;
+  FromSe3(pose, message.position, message.orientation);
+  return Pack(channel::kGroundTruth, message);
+}
+
+}  // namespace
+
+StereoPlayer::StereoPlayer(const StereoSequence* sequence, std::int64_t session,
+                           const ImagePackerOptions& options)
+    : sequence_(sequence), session_(session), packer_(options) {}
+
+bool StereoPlayer::IsCalibrationDue(std::int64_t utime) {
+  if (calibration_utime_ && utime >= *calibration_utime_ &&
+      utime - *calibration_utime_ < kCalibrationPeriod_us) {
+    return false;
+  }
+  calibration_utime_ = utime;
+  return true;
+}
+
+Envelope StereoPlayer::Calibration(const Header& header) const {
+  auto message = MessageOf<stereo_calibration_t>(header);
+  FromStereoCamera(sequence_->camera(), &message);
+  return Pack(channel::kCalibration, message);
+}
+
+StereoPlayer::Frame StereoPlayer::Load(std::size_t index) {
+  SequenceFrame data = sequence_->Load(index);
+  Frame frame;
+  frame.header = {data.utime, static_cast<std::int64_t>(index), session_};
+  std::vector<Envelope>& messages = frame.messages;
+  if (IsCalibrationDue(data.utime)) messages.push_back(Calibration(frame.header));
+
+  const auto pack_image = [&](const char* channel, const std::vector<std::uint8_t>& file) {
+    auto message = MessageOf<image_t>(frame.header);
+    packer_.Pack(file, "frame " + std::to_string(index) + " for " + channel, &message);
+    messages.push_back(Pack(channel, message));
+  };
+  pack_image(channel::kCameraLeft, data.left_image_file);
+  pack_image(channel::kCameraRight, data.right_image_file);
+  messages.push_back(
+      PackKeypoints(channel::kPersonKeypointsLeft, frame.header, data.keypoints_left));
+  messages.push_back(
+      PackKeypoints(channel::kPersonKeypointsRight, frame.header, data.keypoints_right));
+  messages.push_back(PackMask(frame.header, sequence_->camera(), std::move(data.person_mask_file)));
+  if (data.ground_truth) {
+    messages.push_back(
+        PackGroundTruth(frame.header, *data.ground_truth, sequence_->ground_truth_axes()));
+  }
+  return frame;
+}
+
+}  // namespace airdos

@@ -1,0 +1,239 @@
+#include "processes/tools/replay.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "airdos/state_estimate_t.hpp"
+#include "common/util/digest.h"
+#include "common/util/error.h"
+#include "processes/node/channels.h"
+#include "processes/node/codec.h"
+#include "processes/node/fifo_bus.h"
+
+namespace airdos {
+namespace {
+
+double NowMs(clockid_t clock) {
+  timespec now = {};
+  clock_gettime(clock, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+// Adds up what a node's calls take until it is done with a frame.
+class Stopwatch : public FifoBus::WorkObserver {
+ public:
+  void BeforeWork(const Node&) override {
+    start_wall_ms_ = NowMs(CLOCK_MONOTONIC);
+    start_cpu_ms_ = NowMs(CLOCK_PROCESS_CPUTIME_ID);
+  }
+  void AfterWork(const Node& node) override {
+    Lap& lap = laps_[node.name()];
+    lap.cpu_ms += NowMs(CLOCK_PROCESS_CPUTIME_ID) - start_cpu_ms_;
+    lap.wall_ms += NowMs(CLOCK_MONOTONIC) - start_wall_ms_;
+    if (node.frames().num_done == lap.num_done) return;
+    NodeTiming& timing = timing_[node.name()];
+    timing.wall_ms.push_back(lap.wall_ms);
+    timing.cpu_ms.push_back(lap.cpu_ms);
+    lap = {0, 0, node.frames().num_done};
+  }
+  std::map<std::string, NodeTiming> TakeTiming() { return std::move(timing_); }
+
+ private:
+  struct Lap {
+    double wall_ms = 0;
+    double cpu_ms = 0;
+    std::int64_t num_done = 0;
+  };
+  double start_wall_ms_ = 0;
+  double start_cpu_ms_ = 0;
+  std::map<std::string, Lap> laps_;
+  std::map<std::string, NodeTiming> timing_;
+};
+
+using FrameKey = std::pair<std::int64_t, std::int64_t>;  // session, seq
+
+// Keeps what the bus carries: log, digests, numbers of frames.
+class Archive {
+ public:
+  explicit Archive(const ReplayOptions& options) : writes_inputs_(options.writes_inputs) {
+    if (!options.out_path.empty()) writer_.emplace(options.out_path);
+  }
+
+  void Take(const Envelope& message) {
+    const void* data = message.payload.data();
+    const std::size_t size = message.payload.size();
+    const Header header = PeekHeader(data, size).value_or(Header{});
+    const bool is_input = IsInputChannel(message.channel);
+    if (message.channel == channel::kCameraLeft || message.channel == channel::kCameraRight)
+      frames_.insert({header.session, header.seq});
+    if (message.channel == channel::kStateEstimate && HasPose(data, size))
+      posed_.insert({header.session, header.seq});
+    if (IsOutputChannel(message.channel)) digests_.Add(message.channel, data, size);
+    if (writer_ && (writes_inputs_ || !is_input))
+      writer_->Append(header.utime, message.channel, data, size);
+  }
+
+  void Fill(ReplayResult* result) const {
+    result->num_frames = static_cast<std::int64_t>(frames_.size());
+    result->num_posed = static_cast<std::int64_t>(posed_.size());
+    result->num_events = writer_ ? writer_->num_events() : 0;
+    result->digests = digests_.Result();
+  }
+
+ private:
+  static bool HasPose(const void* data, std::size_t size) {
+    state_estimate_t estimate = {};
+    if (!Decode(data, size, &estimate)) return false;
+    if (estimate.status == state_estimate_t::STATUS_INVALID) return false;
+    double sum = 0;
+    for (const double value : estimate.position_W_C) sum += value;
+    for (const double value : estimate.orientation_W_C) sum += value;
+    return std::isfinite(sum);
+  }
+
+  bool writes_inputs_;
+  std::optional<EventLogWriter> writer_;
+  ChannelDigests digests_;
+  std::set<FrameKey> frames_;
+  std::set<FrameKey> posed_;
+};
+
+std::string FileSha256(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path + ": cannot be read");
+  Digest digest;
+  std::vector<char> chunk(1 << 20);
+  while (file.read(chunk.data(), static_cast<std::streamsize>(chunk.size())), file.gcount() > 0)
+    digest.Add(chunk.data(), static_cast<std::size_t>(file.gcount()));
+  return digest.Hex();
+}
+
+void AddRemarks(const Node& node, std::vector<std::string>* remarks) {
+  const FrameCounters& frames = node.frames();
+  if (frames.num_incomplete > 0) {
+    remarks->push_back(node.name() + ": " + std::to_string(frames.num_incomplete) +
+                       " frames incomplete");
+  }
+  for (const auto& [channel, counters] : node.channels()) {
+    const auto add = [&, name = channel](std::int64_t count, const std::string& what) {
+      if (count > 0)
+        remarks->push_back(node.name() + ": " + name + ": " + std::to_string(count) + " " + what);
+    };
+    add(counters.num_missing, "missing");
+    add(counters.num_duplicate, "duplicate or late");
+    add(counters.num_rejected, "rejected, the last because: " + counters.last_reject);
+  }
+}
+
+struct Statistics {
+  double mean = 0;
+  double p50 = 0;
+  double p99 = 0;
+};
+
+Statistics StatisticsOf(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  double sum = 0;
+  for (const double value : values) sum += value;
+  const auto last = static_cast<double>(values.size() - 1);
+  const auto quantile = [&](double q) { return values[static_cast<std::size_t>(q * last + 0.5)]; };
+  return {sum / static_cast<double>(values.size()), quantile(0.50), quantile(0.99)};
+}
+
+}  // namespace
+
+ReplayResult Replay(FrameSource* source, const std::vector<ReplayNode>& nodes,
+                    const ReplayOptions& options) {
+  Archive archive(options);
+  Stopwatch stopwatch;
+  FifoBus bus;
+  for (const ReplayNode& entry : nodes) bus.AddNode(entry.node.get(), entry.publishes);
+  bus.AddObserver([&archive](const Envelope& message) { archive.Take(message); });
+  bus.SetWorkObserver(&stopwatch);
+
+  for (;;) {
+    std::vector<Envelope> frame = source->NextFrame();
+    if (frame.empty()) break;
+    for (Envelope& message : frame) bus.Publish(std::move(message));
+    if (options.on_progress) options.on_progress(source->fraction_done());
+  }
+  bus.Finish();
+
+  ReplayResult result;
+  archive.Fill(&result);
+  if (!options.out_path.empty()) result.log_sha256 = FileSha256(options.out_path);
+  result.timing = stopwatch.TakeTiming();
+  if (!source->damage().empty()) result.remarks.push_back("input: " + source->damage());
+  for (const ReplayNode& entry : nodes) AddRemarks(*entry.node, &result.remarks);
+  return result;
+}
+
+std::map<std::string, ChannelDigests::Entry> DigestLog(const std::string& path) {
+  EventLogReader reader(path);
+  ChannelDigests digests;
+  while (const std::optional<LogEvent> event = reader.Next()) {
+    if (IsOutputChannel(event->channel))
+      digests.Add(event->channel, event->payload.data(), event->payload.size());
+  }
+  return digests.Result();
+}
+
+std::string FormatDigests(const std::map<std::string, ChannelDigests::Entry>& digests) {
+  std::ostringstream text;
+  for (const auto& [channel, entry] : digests) {
+    text << std::left << std::setw(20) << channel << std::right << std::setw(7)
+         << entry.num_messages << "  " << entry.sha256 << "\n";
+  }
+  return text.str();
+}
+
+std::string FormatSummary(const ReplayResult& result) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1);
+  text << "frames: " << result.num_frames << ", with a pose: " << result.num_posed << "\n";
+  text << "ms per frame      wall: mean    p50    p99    CPU: mean    p50    p99\n";
+  for (const auto& [name, timing] : result.timing) {
+    const Statistics wall = StatisticsOf(timing.wall_ms);
+    const Statistics cpu = StatisticsOf(timing.cpu_ms);
+    text << std::left << std::setw(16) << name << std::right << std::setw(13) << wall.mean
+         << std::setw(7) << wall.p50 << std::setw(7) << wall.p99 << std::setw(13) << cpu.mean
+         << std::setw(7) << cpu.p50 << std::setw(7) << cpu.p99 << "\n";
+  }
+  text << FormatDigests(result.digests);
+  for (const std::string& remark : result.remarks) text << "note: " << remark << "\n";
+  if (!result.log_sha256.empty()) {
+    text << "output log        " << std::setw(9) << result.num_events << "  " << result.log_sha256
+         << "\n";
+  }
+  return text.str();
+}
+
+void WriteTiming(const ReplayResult& result, const std::string& path) {
+  const auto to_json = [](const std::vector<double>& values) {
+    const Statistics statistics = StatisticsOf(values);
+    return nlohmann::json{
+        {"mean", statistics.mean}, {"p50", statistics.p50}, {"p99", statistics.p99}};
+  };
+  nlohmann::json json{{"num_frames", result.num_frames}, {"num_posed", result.num_posed}};
+  for (const auto& [name, timing] : result.timing) {
+    json["processes"][name] = {{"num_frames", timing.wall_ms.size()},
+                               {"wall_ms", to_json(timing.wall_ms)},
+                               {"cpu_ms", to_json(timing.cpu_ms)}};
+  }
+  std::ofstream file(path);
+  file << json.dump(2) << "\n";
+  file.close();
+  if (!file) throw InputError(path + ": cannot be written");
+}
+
+}  // namespace airdos
