@@ -2,9 +2,18 @@
 # Shared by the launch scripts: the project's folder, messages, network namespaces. To be sourced.
 
 AIRDOS_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-AIRDOS_BIN=${AIRDOS_BIN:-$AIRDOS_ROOT/build/bin}
+# In the source tree or installed (share/airdos/scripts).
+if [[ -e $AIRDOS_ROOT/CMakeLists.txt ]]; then
+  AIRDOS_BIN=${AIRDOS_BIN:-$AIRDOS_ROOT/build/bin}
+  AIRDOS_RUNS=$AIRDOS_ROOT/logs/runs
+else
+  AIRDOS_BIN=${AIRDOS_BIN:-$AIRDOS_ROOT/../../bin}
+  AIRDOS_RUNS=${XDG_STATE_HOME:-$HOME/.local/state}/airdos/runs
+fi
 AIRDOS_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=0'
-readonly AIRDOS_ROOT AIRDOS_BIN AIRDOS_DEFAULT_URL
+# What a camera and the detectors say; a log may hold more.
+AIRDOS_CAMERA_CHANNELS='^(CAMERA_LEFT|CAMERA_RIGHT|CALIBRATION|PERSON_KEYPOINTS_LEFT|PERSON_KEYPOINTS_RIGHT|PERSON_MASK|GROUND_TRUTH)$'
+readonly AIRDOS_ROOT AIRDOS_BIN AIRDOS_RUNS AIRDOS_DEFAULT_URL AIRDOS_CAMERA_CHANNELS
 
 readonly EXIT_BAD_INPUT=2
 

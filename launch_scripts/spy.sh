@@ -41,7 +41,7 @@ if [[ -n $namespace ]]; then
   pid=$namespace
   if [[ ! $namespace =~ ^[0-9]+$ ]]; then
     run_dir=$namespace
-    [[ $namespace == latest ]] && run_dir=$AIRDOS_ROOT/logs/runs/latest
+    [[ $namespace == latest ]] && run_dir=$AIRDOS_RUNS/latest
     [[ -r $run_dir/state ]] || die_usage "--namespace: no run of run_live.sh in '$run_dir'"
     pid=$(state_of pid "$run_dir")
     [[ $url_given == yes ]] || url=$(state_of url "$run_dir")

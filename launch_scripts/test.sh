@@ -29,11 +29,11 @@ done
 # print_skipped FOLDER: name and reason of each skipped test, from ctest's own log of the last run.
 print_skipped() {
   awk '
-    /^[0-9]+\/[0-9]+ Test: /  { name = $3; reason = ""; in_reason = 0 }
-    /: Skipped$/              { in_reason = 1; next }
-    /^SKIPPED:/               { reason = substr($0, 10) }
-    in_reason && NF           { reason = $0; in_reason = 0 }
-    /^Test (Skipped|Not Run)/ { print "  skipped: " name ": " (reason == "" ? "no reason given" : reason) }
+    /^[0-9]+\/[0-9]+ Test: /  { name = $3; reason = ""; skipped = next_is_reason = 0 }
+    next_is_reason            { reason = $0; next_is_reason = 0 }
+    /: Skipped$/              { skipped = next_is_reason = 1 }  # as GoogleTest says it
+    /^SKIPPED: /              { skipped = 1; reason = substr($0, 10) }  # as our scripts say it
+    /^<end of output>$/       { if (skipped) print "  skipped: " name ": " reason; skipped = 0 }
     ' "$1/Testing/Temporary/LastTest.log"
 }
 
