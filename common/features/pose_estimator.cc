@@ -23,19 +23,17 @@ struct Residual {
 
 /// r = (z - pi(T_C_W p_W)) / sigma with its derivative by the tangent of T_W_C: p_C(delta) ~ p_C -
 /// delta_t + [p_C]_x delta_r.
-Residual Evaluate(const StereoCamera& camera, const Se3& T_C_W, const PoseObservation& observation,
-                  bool with_jacobian) {
+Residual Evaluate(const StereoCamera& camera, const Se3& T_C_W,
+                  const PoseObservation& observation) {
   Residual residual;
   const Eigen::Vector3d p_C = T_C_W * observation.p_W;
   residual.is_in_front = p_C.z() > kMinDepth_m;
   if (!residual.is_in_front) return residual;
   const double weight = 1.0 / observation.sigma_px;
   residual.value = weight * (observation.uvu_px - camera.ProjectStereo(p_C));
-  if (with_jacobian) {
-    const Eigen::Matrix3d J = -weight * camera.ProjectStereoJacobian(p_C);
-    residual.jacobian.leftCols<3>() = -J;
-    residual.jacobian.rightCols<3>() = J * Skew(p_C);
-  }
+  const Eigen::Matrix3d J = -weight * camera.ProjectStereoJacobian(p_C);
+  residual.jacobian.leftCols<3>() = -J;
+  residual.jacobian.rightCols<3>() = J * Skew(p_C);
   if (!observation.has_right) {
     residual.value.z() = 0;
     residual.jacobian.row(2).setZero();
@@ -72,7 +70,7 @@ bool Step(const StereoCamera& camera, const std::vector<PoseObservation>& observ
   int num_used = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (!is_used[i]) continue;
-    const Residual residual = Evaluate(camera, T_C_W, observations[i], true);
+    const Residual residual = Evaluate(camera, T_C_W, observations[i]);
     if (!residual.is_in_front) continue;
     const double norm = residual.value.norm();
     const double huber = std::sqrt(Chi2Bound(observations[i]));
@@ -110,12 +108,15 @@ PoseEstimate EstimatePose(const StereoCamera& camera,
       if (step_norm < kConverged) break;
     }
     estimate.num_inliers = 0;
+    estimate.information.setZero();
     const Se3 T_C_W = estimate.T_W_C.inverse();
     for (std::size_t i = 0; i < observations.size(); ++i) {
-      const Residual residual = Evaluate(camera, T_C_W, observations[i], false);
+      const Residual residual = Evaluate(camera, T_C_W, observations[i]);
       estimate.is_inlier[i] =
           residual.is_in_front && residual.value.squaredNorm() <= Chi2Bound(observations[i]);
-      estimate.num_inliers += estimate.is_inlier[i] ? 1 : 0;
+      if (!estimate.is_inlier[i]) continue;
+      ++estimate.num_inliers;
+      estimate.information.noalias() += residual.jacobian.transpose() * residual.jacobian;
     }
   }
   return estimate;

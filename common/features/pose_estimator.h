@@ -30,6 +30,8 @@ struct PoseEstimate {
   Se3 T_W_C;
   std::vector<bool> is_inlier;  ///< per observation: chi-square within 95 %
   int num_inliers = 0;
+  Matrix6d information =
+      Matrix6d::Zero();  ///< of the tangent, from the inliers alone: without the prior
 };
 
 /// Pose of one frame by Gauss-Newton on the stereo reprojection errors (paper, eq. 1) with Huber

@@ -1,5 +1,6 @@
 #include "common/features/visual_odometry.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -13,6 +14,8 @@ namespace {
 
 constexpr int kRecentFrames = 3;  // landmarks of so many frames are searched in the whole image
 constexpr std::size_t kNumInnovations = 20;
+constexpr int kMaxPerCell = 2;       // observed landmarks
+constexpr int kMaxTriedPerCell = 4;  // landmarks or corners that are looked for to get there
 
 double MedianOfNorms(const std::deque<Vector6d>& values, int begin) {
   std::vector<double> norms;
@@ -21,6 +24,29 @@ double MedianOfNorms(const std::deque<Vector6d>& values, int begin) {
   std::nth_element(norms.begin(), middle, norms.end());
   return *middle;
 }
+
+/// Counts what lies in each square cell of the image.
+class CellCounter {
+ public:
+  explicit CellCounter(int cell_size_px) : cell_size_px_(cell_size_px) {}
+  bool IsFull(const Eigen::Vector2d& uv_px, int limit) const {
+    const auto it = counts_.find(CellOf(uv_px));
+    return it != counts_.end() && it->second >= limit;
+  }
+  /// False where the cell is full.
+  bool Take(const Eigen::Vector2d& uv_px, int limit) {
+    int& count = counts_[CellOf(uv_px)];
+    return count < limit && ++count > 0;
+  }
+
+ private:
+  std::pair<int, int> CellOf(const Eigen::Vector2d& uv_px) const {
+    return {static_cast<int>(uv_px.x()) / cell_size_px_,
+            static_cast<int>(uv_px.y()) / cell_size_px_};
+  }
+  int cell_size_px_;
+  std::map<std::pair<int, int>, int> counts_;
+};
 
 bool IsMasked(const cv::Mat& mask, const Eigen::Vector2d& uv_px) {
   if (mask.empty()) return false;
@@ -92,11 +118,11 @@ OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoIm
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (estimate.is_inlier[i]) inliers.push_back(frame.sightings[i]);
   }
-  frame.sightings = KeepSpread(view, std::move(inliers));
+  frame.sightings = KeepSpread(std::move(inliers));
 
   UpdateLandmarks(view, frame.T_W_C, frame.sightings);
-  Remember(images.id, images.time_s, frame.T_W_C, predicted,
-           frame.state == TrackingState::kTracking);
+  Remember(images.id, images.time_s, frame.T_W_C);
+  if (frame.state == TrackingState::kTracking) LearnFrom(estimate, prior);
   CreateLandmarks(view, frame.T_W_C, &frame.sightings);
   map_.Cull(images.id);
   return frame;
@@ -111,7 +137,7 @@ OdometryFrame VisualOdometry::Coast(FrameId id, double time_s) {
   frame.T_W_C = predicted;
   frame.prior_sigma_position_m = prior.sigma_position_m;
   frame.prior_sigma_orientation_rad = prior.sigma_orientation_rad;
-  Remember(id, time_s, predicted, predicted, false);
+  Remember(id, time_s, predicted);
   return frame;
 }
 
@@ -203,19 +229,39 @@ PoseEstimate VisualOdometry::EstimateFromMatches(const View& view,
 
 std::vector<LandmarkSighting> VisualOdometry::Sight(const View& view,
                                                     const Hypothesis& hypothesis) {
+  struct Candidate {
+    VisibleLandmark visible;
+    const Feature* feature;
+  };
   std::map<LandmarkId, const Feature*> feature_of;
   for (const LandmarkMatch& match : hypothesis.matches) {
     feature_of[match.landmark] = &view.left_features[static_cast<std::size_t>(match.feature)];
   }
-  std::vector<LandmarkSighting> sightings;
+  std::vector<Candidate> candidates;
   for (const VisibleLandmark& visible :
        FindVisible(map_, view.camera, hypothesis.T_W_C, view.left->num_levels())) {
     if (IsMasked(view.images.mask, visible.uv_px)) continue;
-    ++map_.landmarks().at(visible.id).num_expected;
     const auto match = feature_of.find(visible.id);
-    const Feature* feature = match == feature_of.end() ? nullptr : match->second;
-    if (const auto sighting = SightOne(view, visible, feature)) sightings.push_back(*sighting);
+    candidates.push_back({visible, match == feature_of.end() ? nullptr : match->second});
   }
+  // Where many landmarks crowd, a few are enough: first those that were matched, then the longest
+  // known.
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) {
+                     if ((a.feature != nullptr) != (b.feature != nullptr))
+                       return a.feature != nullptr;
+                     return a.visible.landmark->num_seen > b.visible.landmark->num_seen;
+                   });
+  CellCounter cells(options_.observation_cell_px);
+  std::vector<LandmarkSighting> sightings;
+  for (const Candidate& candidate : candidates) {
+    if (!cells.Take(candidate.visible.uv_px, kMaxTriedPerCell)) continue;
+    ++map_.landmarks().at(candidate.visible.id).num_expected;
+    if (const auto sighting = SightOne(view, candidate.visible, candidate.feature))
+      sightings.push_back(*sighting);
+  }
+  std::sort(sightings.begin(), sightings.end(),
+            [](const auto& a, const auto& b) { return a.id < b.id; });
   return sightings;
 }
 
@@ -260,22 +306,17 @@ std::optional<LandmarkSighting> VisualOdometry::SightOne(const View& view,
 }
 
 std::vector<LandmarkSighting> VisualOdometry::KeepSpread(
-    const View& view, std::vector<LandmarkSighting> sightings) const {
-  constexpr int kMaxPerCell = 2;
+    std::vector<LandmarkSighting> sightings) const {
   // The longest known first: they tie the new frames to the old ones.
   std::stable_sort(sightings.begin(), sightings.end(), [this](const auto& a, const auto& b) {
     return map_.landmarks().at(a.id).num_seen > map_.landmarks().at(b.id).num_seen;
   });
-  std::map<std::pair<int, int>, int> count_of_cell;
+  CellCounter cells(options_.observation_cell_px);
   std::vector<LandmarkSighting> kept;
   for (const LandmarkSighting& sighting : sightings) {
     if (kept.size() >= static_cast<std::size_t>(options_.max_observations)) break;
-    const std::pair<int, int> cell(
-        static_cast<int>(sighting.uvu_px.x()) / options_.observation_cell_px,
-        static_cast<int>(sighting.uvu_px.y()) / options_.observation_cell_px);
-    if (count_of_cell[cell]++ < kMaxPerCell) kept.push_back(sighting);
+    if (cells.Take(sighting.uvu_px.head<2>(), kMaxPerCell)) kept.push_back(sighting);
   }
-  static_cast<void>(view);
   std::sort(kept.begin(), kept.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   return kept;
 }
@@ -306,65 +347,60 @@ void VisualOdometry::UpdateLandmarks(const View& view, const Se3& T_W_C,
 
 void VisualOdometry::CreateLandmarks(const View& view, const Se3& T_W_C,
                                      std::vector<LandmarkSighting>* sightings) {
-  const double min_distance_px = 0.5 * options_.observation_cell_px;
-  const int num_columns = view.camera.width / options_.observation_cell_px + 1;
-  std::map<int, int> count_of_cell;
-  const auto cell_of = [&](const Eigen::Vector2d& uv_px) {
-    return static_cast<int>(uv_px.y()) / options_.observation_cell_px * num_columns +
-           static_cast<int>(uv_px.x()) / options_.observation_cell_px;
-  };
-  std::map<int, std::vector<Eigen::Vector2d>> taken;
+  CellCounter cells(options_.observation_cell_px);
   for (const LandmarkSighting& sighting : *sightings)
-    taken[cell_of(sighting.uvu_px.head<2>())].push_back(sighting.uvu_px.head<2>());
-
-  // The strongest corner of each free cell.
-  std::map<int, std::vector<const Feature*>> features_of_cell;
-  for (const Feature& feature : view.left_features)
-    features_of_cell[cell_of(feature.uv_px)].push_back(&feature);
-  for (auto& [cell, features] : features_of_cell) {
-    std::stable_sort(features.begin(), features.end(),
-                     [](const Feature* a, const Feature* b) { return a->response > b->response; });
-    std::size_t num_tried = 0;
-    for (const Feature* feature : features) {
-      if (taken[cell].size() >= 2 || ++num_tried > 6) break;
-      if (sightings->size() >= static_cast<std::size_t>(options_.max_observations)) return;
-      const bool is_near =
-          std::any_of(taken[cell].begin(), taken[cell].end(), [&](const Eigen::Vector2d& uv_px) {
-            return (uv_px - feature->uv_px).norm() < min_distance_px;
-          });
-      if (is_near) continue;
-      const std::optional<double> u_right_px = view.stereo->Match(*feature);
-      if (!u_right_px) continue;
-      const auto p_C = view.camera.Triangulate(feature->uv_px.x(), feature->uv_px.y(), *u_right_px);
-      if (!p_C) continue;
-      MapLandmark landmark;
-      landmark.p_W = T_W_C * *p_C;
-      landmark.reference_frame = view.images.id;
-      landmark.p_C_reference = *p_C;
-      landmark.reference_image = view.left;
-      landmark.reference_uv_px = feature->uv_px;
-      landmark.reference_level = feature->level;
-      landmark.descriptor = feature->descriptor;
-      landmark.last_seen = view.images.id;
-      landmark.num_seen = 1;
-      landmark.num_expected = 1;
-      taken[cell].push_back(feature->uv_px);
-      const LandmarkId id = map_.Add(std::move(landmark));
-      sightings->push_back({id,
-                            {feature->uv_px.x(), feature->uv_px.y(), *u_right_px},
-                            true,
-                            options_.aligned_sigma_px * view.left->scale(feature->level)});
-    }
+    cells.Take(sighting.uvu_px.head<2>(), kMaxPerCell);
+  std::vector<const Feature*> by_response;
+  for (const Feature& feature : view.left_features) by_response.push_back(&feature);
+  std::stable_sort(by_response.begin(), by_response.end(),
+                   [](const Feature* a, const Feature* b) { return a->response > b->response; });
+  CellCounter tried(options_.observation_cell_px);
+  for (const Feature* feature : by_response) {
+    if (sightings->size() >= static_cast<std::size_t>(options_.max_observations)) return;
+    if (cells.IsFull(feature->uv_px, kMaxPerCell) || !tried.Take(feature->uv_px, kMaxTriedPerCell))
+      continue;
+    const std::optional<double> u_right_px = view.stereo->Match(*feature);
+    if (!u_right_px) continue;
+    const auto p_C = view.camera.Triangulate(feature->uv_px.x(), feature->uv_px.y(), *u_right_px);
+    if (!p_C) continue;
+    cells.Take(feature->uv_px, kMaxPerCell);
+    MapLandmark landmark;
+    landmark.p_W = T_W_C * *p_C;
+    landmark.reference_frame = view.images.id;
+    landmark.p_C_reference = *p_C;
+    landmark.reference_image = view.left;
+    landmark.reference_uv_px = feature->uv_px;
+    landmark.reference_level = feature->level;
+    landmark.descriptor = feature->descriptor;
+    landmark.last_seen = view.images.id;
+    landmark.num_seen = 1;
+    landmark.num_expected = 1;
+    const LandmarkId id = map_.Add(std::move(landmark));
+    sightings->push_back({id,
+                          {feature->uv_px.x(), feature->uv_px.y(), *u_right_px},
+                          true,
+                          options_.aligned_sigma_px * view.left->scale(feature->level)});
   }
 }
 
-void VisualOdometry::Remember(FrameId id, double time_s, const Se3& T_W_C,
-                              const Se3& T_W_C_predicted, bool is_tracked) {
-  if (is_tracked) innovations_.push_back(Boxminus(T_W_C, T_W_C_predicted));
-  if (innovations_.size() > kNumInnovations) innovations_.pop_front();
+void VisualOdometry::Remember(FrameId id, double time_s, const Se3& T_W_C) {
   map_.SetPose(id, T_W_C);
   recent_.emplace_back(id, time_s);
   if (recent_.size() > kRecentFrames) recent_.pop_front();
+}
+
+void VisualOdometry::LearnFrom(const PoseEstimate& estimate, const PosePrior& prior) {
+  // A frame that sees little is off because it sees little: it must not loosen the prior that it
+  // needs most.
+  const Eigen::LDLT<Matrix6d> ldlt(estimate.information);
+  if (ldlt.info() != Eigen::Success || !ldlt.isPositive()) return;
+  const Matrix6d covariance = ldlt.solve(Matrix6d::Identity());
+  const double sigma_position_m = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+  const double sigma_orientation_rad = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  if (!(sigma_position_m < 0.5 * prior.sigma_position_m)) return;
+  if (!(sigma_orientation_rad < 0.5 * prior.sigma_orientation_rad)) return;
+  innovations_.push_back(Boxminus(estimate.T_W_C, prior.T_W_C));
+  if (innovations_.size() > kNumInnovations) innovations_.pop_front();
 }
 
 TrackingState VisualOdometry::StateOf(int num_inliers) const {

@@ -102,14 +102,15 @@ class VisualOdometry {
   std::vector<LandmarkSighting> Sight(const View& view, const Hypothesis& hypothesis);
   std::optional<LandmarkSighting> SightOne(const View& view, const VisibleLandmark& visible,
                                            const Feature* feature) const;
-  std::vector<LandmarkSighting> KeepSpread(const View& view,
-                                           std::vector<LandmarkSighting> sightings) const;
+  std::vector<LandmarkSighting> KeepSpread(std::vector<LandmarkSighting> sightings) const;
   void UpdateLandmarks(const View& view, const Se3& T_W_C,
                        const std::vector<LandmarkSighting>& sightings);
   void CreateLandmarks(const View& view, const Se3& T_W_C,
                        std::vector<LandmarkSighting>* sightings);
-  void Remember(FrameId id, double time_s, const Se3& T_W_C, const Se3& T_W_C_predicted,
-                bool is_tracked);
+  void Remember(FrameId id, double time_s, const Se3& T_W_C);
+  /// Notes by how much the prediction was off, if the frame's own measurements say it better than
+  /// the prior did.
+  void LearnFrom(const PoseEstimate& estimate, const PosePrior& prior);
   TrackingState StateOf(int num_inliers) const;
 
   const VisualOdometryOptions options_;
