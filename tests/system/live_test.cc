@@ -173,7 +173,7 @@ TEST_F(LiveTest, ProcessesFedByLogplayerSayWhatReplayComputes) {
 
 TEST_F(LiveTest, ProcessesFedInLockstepSayWhatReplayComputes) {
   ASSERT_NO_FATAL_FAILURE(StartAll("120"));
-  Process* player = Start("airdos-stereo-player", {log_, "--pace", "lockstep"});
+  Process* player = Start("airdos-stereo-player", {"--data", log_, "--pace", "lockstep"});
   EXPECT_EQ(player->Wait(kRunDeadline_s), 0) << player->Output();
   WaitForLastFrame();
   StopAll();
