@@ -42,7 +42,7 @@ class StderrSilencer {
 };
 
 /// Multicast with a large receive buffer, as far as the system allows, unless the URL says how
-/// large.
+/// large: the kernel's default of 212,992 B loses bursts of messages of more than one datagram.
 std::string WithReceiveBuffer(const std::string& url) {
   if (url.rfind("udpm://", 0) != 0 || url.find("recv_buf_size") != std::string::npos) return url;
   return url + (url.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=4194304";
@@ -56,12 +56,6 @@ std::string WithReceiveBuffer(const std::string& url) {
   }
   throw InputError("LCM URL '" + url +
                    "' cannot be used: expected something like udpm://239.255.76.67:7667?ttl=0");
-}
-
-// A kernel's default of 212,992 B loses messages of more than one datagram in bursts.
-std::string WithReceiveBuffer(const std::string& url) {
-  if (url.rfind("udpm://", 0) != 0 || url.find("recv_buf_size=") != std::string::npos) return url;
-  return url + (url.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=4194304";
 }
 
 }  // namespace
