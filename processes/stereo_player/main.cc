@@ -1,49 +1,30 @@
-#include <filesystem>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <opencv2/core/utility.hpp>
 #include <utility>
 
-#include "common/util/error.h"
 #include "common/util/version.h"
 #include "processes/node/lcm_transport.h"
 #include "processes/node/log_source.h"
 #include "processes/node/process_cli.h"
 #include "processes/node/process_usage.h"
-#include "processes/stereo_player/dataset_source.h"
 #include "processes/stereo_player/player_loop.h"
 #include "processes/stereo_player/player_options.h"
 
 namespace {
-
-// Each loop is a session of its own.
-std::unique_ptr<airdos::FrameSource> Open(const airdos::PlayerOptions& options,
-                                          std::int64_t session) {
-  const std::int64_t last = options.last.value_or(std::numeric_limits<std::int64_t>::max());
-  if (std::filesystem::is_directory(options.data)) {
-    return std::make_unique<airdos::DatasetSource>(options.data, options.first, last, session,
-                                                   options.image);
-  }
-  if (options.session || options.num_loops != 1) {
-    throw airdos::InputError(options.data +
-                             ": a log has its own session: it goes without --session and --loop");
-  }
-  return std::make_unique<airdos::LogSource>(options.data, options.first, last);
-}
 
 int Play(const airdos::PlayerOptions& options, const airdos::CommonArguments& common) {
   airdos::InstallStopSignals();
   cv::setNumThreads(1);
   const std::int64_t session = options.session.value_or(airdos::WallClock_us());
   // Opened before anything is said, so that a wrong path is.
-  std::unique_ptr<airdos::FrameSource> first = Open(options, session);
+  std::unique_ptr<airdos::FrameSource> first = airdos::OpenPlayerSource(options, session);
   if (!options.write_log.empty()) {
     airdos::WriteLog(options.write_log, first.get(), &std::cerr);
     return 0;
   }
   const auto open = [&](int loop) {
-    return loop == 0 ? std::move(first) : Open(options, session + loop);
+    return loop == 0 ? std::move(first) : airdos::OpenPlayerSource(options, session + loop);
   };
   airdos::LcmTransport transport(common.lcm_url);
   airdos::PlayerLoop loop(options, open, &transport, &std::cerr);

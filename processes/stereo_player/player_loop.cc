@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <limits>
 #include <sstream>
 #include <thread>
 #include <utility>
 
+#include "common/util/error.h"
 #include "processes/node/channels.h"
 #include "processes/node/event_log.h"
 #include "processes/node/process_usage.h"
+#include "processes/stereo_player/dataset_source.h"
 
 namespace airdos {
 namespace {
@@ -41,6 +45,19 @@ LcmTransport::Handler HandlerOf(Handle handle) {
 }
 
 }  // namespace
+
+std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std::int64_t session) {
+  const std::int64_t last = options.last.value_or(std::numeric_limits<std::int64_t>::max());
+  if (std::filesystem::is_directory(options.data)) {
+    return std::make_unique<DatasetSource>(options.data, options.first, last, session,
+                                           options.image);
+  }
+  if (options.session || options.num_loops != 1) {
+    throw InputError(options.data +
+                     ": a log has its own session: it goes without --session and --loop");
+  }
+  return std::make_unique<LogSource>(options.data, options.first, last);
+}
 
 void WriteLog(const std::string& path, FrameSource* source, std::ostream* log) {
   EventLogWriter writer(path);

@@ -15,6 +15,10 @@
 
 namespace airdos {
 
+/// What `options` say is to be played. `session` is that of a data set; a log has its own. Throws
+/// InputError.
+std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std::int64_t session);
+
 /// Writes what the player would publish as an LCM log; the times in it are capture times, so that
 /// the same frames give the same file.
 void WriteLog(const std::string& path, FrameSource* source, std::ostream* log);
