@@ -51,7 +51,9 @@ void WriteLog(const PlayerOptions& options, const StereoSequence& sequence, std:
                     message.payload.size());
     }
   }
-  for (const std::string& note : player.TakeNotes()) *log << note << std::endl;
+  for (const std::string& note : player.TakeNotes()) {
+    *log << "airdos-stereo-player: " << note << std::endl;
+  }
   writer.Sync();
   *log << "airdos-stereo-player: " << options.write_log << ": " << writer.num_events()
        << " messages, " << writer.num_bytes() << " bytes" << std::endl;
