@@ -21,6 +21,7 @@ int Play(const airdos::PlayerOptions& options, const airdos::CommonArguments& co
     airdos::WriteLog(options, *sequence, session, &std::cerr);
     return 0;
   }
+  airdos::RangeOf(options, *sequence);  // complains before anything starts
   airdos::LcmTransport transport(common.lcm_url);
   airdos::PlayerLoop loop(options, sequence.get(), session, &transport, &std::cerr);
   std::cout << "airdos-stereo-player READY version " << airdos::kVersion << " url "
