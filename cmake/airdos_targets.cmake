@@ -16,11 +16,14 @@ function(airdos_library name)
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
 endfunction()
 
+# Everything that runs, without the tests.
+add_custom_target(airdos_programs)
 # airdos_program(NAME SOURCES main.cc DEPS libraries): an installed executable
 function(airdos_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPS} airdos_options)
+  add_dependencies(airdos_programs ${name})
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
@@ -34,5 +37,9 @@ function(airdos_test name tier)
   target_link_libraries(${name} PRIVATE ${ARG_DEPS} airdos_options GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE AIRDOS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              AIRDOS_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  if(NOT TARGET airdos_tests_${tier})  # all tests of one tier
+    add_custom_target(airdos_tests_${tier})
+  endif()
+  add_dependencies(airdos_tests_${tier} ${name})
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${tier} TIMEOUT ${ARG_TIMEOUT})
 endfunction()

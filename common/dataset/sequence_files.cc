@@ -9,9 +9,9 @@
 #include <iterator>
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
-#include <sstream>
 
 #include "common/util/error.h"
+#include "common/util/text_file.h"
 
 namespace airdos {
 namespace {
@@ -62,35 +62,6 @@ bool SplitDecimal(std::string text, std::string* digits, int* num_integer_digits
 }
 
 }  // namespace
-
-std::vector<TextLine> ReadTextLines(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(path + ": cannot be read");
-  std::vector<TextLine> lines;
-  std::string text;
-  for (int number = 1; std::getline(file, text); ++number) {
-    std::istringstream stream(text);
-    TextLine line;
-    line.number = number;
-    line.words.assign(std::istream_iterator<std::string>(stream), {});
-    if (!line.words.empty() && line.words[0][0] != '#') lines.push_back(std::move(line));
-  }
-  if (file.bad()) throw InputError(path + ": cannot be read");
-  return lines;
-}
-
-std::vector<double> ParseNumbers(const std::string& path, const TextLine& line, std::size_t first) {
-  std::vector<double> numbers;
-  for (std::size_t i = first; i < line.words.size(); ++i) {
-    char* end = nullptr;
-    const double number = std::strtod(line.words[i].c_str(), &end);
-    if (*end != '\0' || !std::isfinite(number)) {
-      Fail(path, line.number, "'" + line.words[i] + "' is not a finite number");
-    }
-    numbers.push_back(number);
-  }
-  return numbers;
-}
 
 std::vector<std::uint8_t> ReadBytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

@@ -13,16 +13,6 @@ namespace airdos {
 // The files that data set layouts are made of. Every function throws InputError naming the file and
 // the line that cannot be used.
 
-/// A line of a text file: its number (from 1) and its words.
-struct TextLine {
-  int number = 0;
-  std::vector<std::string> words;
-};
-/// Lines that are neither empty nor a comment (#).
-std::vector<TextLine> ReadTextLines(const std::string& path);
-/// The words as finite numbers.
-std::vector<double> ParseNumbers(const std::string& path, const TextLine& line, std::size_t first);
-
 /// A whole file.
 std::vector<std::uint8_t> ReadBytes(const std::string& path);
 /// A whole JPEG or PNG file, told by its first bytes.

@@ -9,6 +9,7 @@
 #include "common/dataset/folder_sequence.h"
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
+#include "common/util/text_file.h"
 
 namespace airdos {
 namespace {

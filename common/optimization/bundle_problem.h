@@ -13,6 +13,12 @@
 
 namespace airdos {
 
+/// How much a carrier may accelerate: one standard deviation, per axis.
+struct AccelerationSigma {
+  double linear_m_s2 = 2.0;
+  double angular_rad_s2 = 5.0;
+};
+
 /// The unknowns and measurements of one bundle adjustment with people (paper, eq. 6). Indices point
 /// into the vectors of the same struct. The order of the vectors decides the order in which factors
 /// reach the solver, so whoever fills them sorts by id.
@@ -36,6 +42,11 @@ struct BundleProblem {
     double sigma_px = 1;
     bool is_eliminated = false;  ///< result: its error was too large
   };
+  /// Three consecutive frames, oldest first, whose camera moves smoothly.
+  struct CameraAcceleration {
+    std::array<int, 3> frames = {};
+    AccelerationSigma sigma;
+  };
   /// One joint of one person in one frame (eq. 2).
   struct JointState {
     int frame = 0;
@@ -45,9 +56,18 @@ struct BundleProblem {
     double sigma_px = 1;
     bool is_eliminated = false;  ///< result: its reprojection was thrown out
   };
+  /// Result: how one rigid part (index into kParts) moved from the frame where the person was seen
+  /// before to `frame`: p_k = R (p_km1 - centroid_W) + centroid_W + t, R and t in W.
+  struct PartMotion {
+    int frame = 0;
+    int part = 0;
+    Eigen::Vector3d centroid_W = Eigen::Vector3d::Zero();
+    Se3 motion_W;
+  };
   struct Human {
     HumanId id;
-    std::vector<JointState> joints;  ///< sorted by (frame, joint)
+    std::vector<JointState> joints;   ///< sorted by (frame, joint), at most one of each
+    std::vector<PartMotion> motions;  ///< result, sorted by (frame, part)
     std::array<std::optional<double>, kNumSegments>
         segment_length_m;             ///< start value (mean of the track), then result
     int num_rigidity_eliminated = 0;  ///< results
@@ -58,6 +78,7 @@ struct BundleProblem {
   std::vector<Frame> frames;  ///< sorted by id; at least one is fixed
   std::vector<Landmark> landmarks;
   std::vector<LandmarkObservation> observations;
+  std::vector<CameraAcceleration> accelerations;
   std::vector<Human> humans;
 };
 

@@ -26,6 +26,8 @@ std::uint64_t ReadBigEndian(const std::uint8_t* bytes, int size) {
   return value;
 }
 
+bool IsVisible(std::uint8_t character) { return character > 0x20 && character != 0x7f; }
+
 void WriteBigEndian(std::uint64_t value, int size, std::uint8_t* bytes) {
   for (int i = 0; i < size; ++i)
     bytes[i] = static_cast<std::uint8_t>(value >> (8 * (size - 1 - i)));
@@ -74,8 +76,7 @@ std::optional<EventLogReader::EventHeader> EventLogReader::HeaderAt(std::int64_t
   if (!ReadAt(offset + kHeaderBytes, bytes.data(), static_cast<std::size_t>(header.channel_bytes)))
     return std::nullopt;
   const auto name_end = bytes.begin() + header.channel_bytes;
-  const auto is_printable = [](std::uint8_t c) { return c > 0x20 && c != 0x7f; };
-  if (!std::all_of(bytes.begin(), name_end, is_printable)) return std::nullopt;
+  if (!std::all_of(bytes.begin(), name_end, IsVisible)) return std::nullopt;
   return header;
 }
 
@@ -177,11 +178,17 @@ void EventLogWriter::Fail(const std::string& what) {
                    " events before are kept");
 }
 
+bool EventLogWriter::Accepts(const std::string& channel, std::size_t size) {
+  return !channel.empty() && channel.size() <= kMaxChannelBytes &&
+         std::all_of(channel.begin(), channel.end(),
+                     [](char c) { return IsVisible(static_cast<std::uint8_t>(c)); }) &&
+         size <= static_cast<std::size_t>(EventLogReader::kMaxPayloadBytes);
+}
+
 void EventLogWriter::Write(std::int64_t number, std::int64_t utime, const std::string& channel,
                            const void* data, std::size_t size) {
   if (has_failed_) Fail("is closed after a failed write");
-  AIRDOS_CHECK(!channel.empty() && channel.size() <= kMaxChannelBytes);
-  AIRDOS_CHECK(size <= static_cast<std::size_t>(EventLogReader::kMaxPayloadBytes));
+  AIRDOS_CHECK(Accepts(channel, size));
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(kHeaderBytes) + channel.size() + size);
   std::copy(kSyncWord.begin(), kSyncWord.end(), bytes.begin());
   WriteBigEndian(static_cast<std::uint64_t>(number), 8, &bytes[4]);
@@ -199,7 +206,8 @@ void EventLogWriter::Write(std::int64_t number, std::int64_t utime, const std::s
       const std::string reason = step < 0 ? std::strerror(errno) : "nothing was taken";
       // Half an event at the end would count as damage; where it cannot be cut off, the reader
       // skips it.
-      if (ftruncate(file_, num_bytes_) != 0) Fail("cannot be written or cut: " + reason);
+      if (num_written > 0 && ftruncate(file_, num_bytes_) != 0)
+        Fail("cannot be written or cut: " + reason);
       Fail("cannot be written: " + reason);
     }
     num_written += static_cast<std::size_t>(step);

@@ -97,8 +97,11 @@ class EventLogWriter {
   EventLogWriter(const EventLogWriter&) = delete;
   EventLogWriter& operator=(const EventLogWriter&) = delete;
 
-  /// Throws WriteError if the event cannot be written as a whole; the log then ends with the event
-  /// before it, and no further one is taken.
+  /// Whether a log can hold such an event: a name of 1..63 visible characters, at most
+  /// EventLogReader::kMaxPayloadBytes.
+  static bool Accepts(const std::string& channel, std::size_t size);
+  /// The log must accept the event. Throws WriteError if it cannot be written as a whole; the log
+  /// then ends with the event before it, and no further one is taken.
   void Write(std::int64_t number, std::int64_t utime, const std::string& channel, const void* data,
              std::size_t size);
   /// Numbers the events from 0 on.

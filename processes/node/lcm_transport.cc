@@ -42,7 +42,7 @@ class StderrSilencer {
 };
 
 /// Multicast with a large receive buffer, as far as the system allows, unless the URL says how
-/// large.
+/// large: the kernel's default of 212,992 B loses bursts of messages of more than one datagram.
 std::string WithReceiveBuffer(const std::string& url) {
   if (url.rfind("udpm://", 0) != 0 || url.find("recv_buf_size") != std::string::npos) return url;
   return url + (url.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=4194304";
@@ -83,13 +83,23 @@ LcmTransport::LcmTransport(const std::string& url) : url_(url) {
 
 LcmTransport::~LcmTransport() = default;
 
-void LcmTransport::Subscribe(const std::string& channel, Handler handler) {
+void LcmTransport::SubscribeTo(const std::string& regex) {
   const StderrSilencer silencer;
-  lcm::Subscription* subscription = lcm_->subscribe(channel, &LcmTransport::OnMessage, this);
+  lcm::Subscription* subscription = lcm_->subscribe(regex, &LcmTransport::OnMessage, this);
   if (subscription == nullptr) FailToOpen(url_);
   // Unbounded: with a bound LCM drops the newest message, and no counter shows it.
   subscription->setQueueCapacity(0);
+}
+
+void LcmTransport::Subscribe(const std::string& channel, Handler handler) {
+  SubscribeTo(channel);
   handlers_[channel] = std::move(handler);
+}
+
+void LcmTransport::SubscribeAll(
+    std::function<void(const std::string&, const void*, std::size_t, std::int64_t)> handler) {
+  SubscribeTo(".*");
+  all_handler_ = std::move(handler);
 }
 
 bool LcmTransport::Poll(int timeout_ms) {
@@ -109,6 +119,7 @@ bool LcmTransport::Publish(const std::string& channel, const void* data, std::si
 void LcmTransport::OnMessage(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
   // An exception that unwinds through LCM's C code makes its next call abort.
   try {
+    if (all_handler_) all_handler_(channel, buffer->data, buffer->data_size, buffer->recv_utime);
     const auto handler = handlers_.find(channel);
     if (handler == handlers_.end()) return;
     handler->second(buffer->data, buffer->data_size, buffer->recv_utime);

@@ -32,7 +32,8 @@ class LcmTransport {
       std::function<void(const void* data, std::size_t size, std::int64_t receive_utime)>;
 
   /// Throws InputError, in one line that says what to do, if the URL is bad or the machine has no
-  /// route for multicast.
+  /// route for multicast. Asks for a receive buffer that takes a burst of large messages, unless
+  /// the URL says a recv_buf_size; the kernel grants up to net.core.rmem_max.
   explicit LcmTransport(const std::string& url);
   ~LcmTransport();
   LcmTransport(const LcmTransport&) = delete;
@@ -40,6 +41,10 @@ class LcmTransport {
 
   /// `channel` is the exact name. Throws InputError as the constructor does.
   void Subscribe(const std::string& channel, Handler handler);
+  /// Every channel; `handler` gets its name first. For recorders and the like.
+  void SubscribeAll(std::function<void(const std::string& channel, const void* data,
+                                       std::size_t size, std::int64_t receive_utime)>
+                        handler);
   /// Hands one message to its handler; waits for it at most `timeout_ms`. False if none came or a
   /// signal did. Throws what the handler threw, and std::runtime_error if LCM is broken.
   bool Poll(int timeout_ms);
@@ -50,10 +55,12 @@ class LcmTransport {
 
  private:
   void OnMessage(const lcm::ReceiveBuffer* buffer, const std::string& channel);
+  void SubscribeTo(const std::string& regex);
 
   std::string url_;
   std::unique_ptr<lcm::LCM> lcm_;
   std::map<std::string, Handler> handlers_;
+  std::function<void(const std::string&, const void*, std::size_t, std::int64_t)> all_handler_;
   std::exception_ptr exception_;
 };
 

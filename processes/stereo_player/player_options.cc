@@ -36,11 +36,12 @@ std::vector<int> ToQualities(const std::string& text) {
 
 PlayerArguments::PlayerArguments(CLI::App* app) {
   AddCommonOptions("stereo_player", app, &common_);
-  app->add_option("--data", options_.data_folder,
-                  "Folder of the sequence (TartanAir-Shibuya or KITTI odometry layout)");
+  app->add_option("--data", options_.data,
+                  "Folder (TartanAir-Shibuya or KITTI odometry layout) or LCM log");
   app->add_option("--first", options_.first, "First frame")->check(CLI::NonNegativeNumber);
   app->add_option("--last", options_.last, "Last frame, included")->check(CLI::NonNegativeNumber);
-  app->add_option("--session", options_.session, "Session number; default: the wall clock in us");
+  app->add_option("--session", options_.session,
+                  "Session number; default: the wall clock in us, or that of the log");
   app->add_option("--loop", options_.num_loops, "How often to play, each a session; 0: for ever")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
@@ -65,7 +66,7 @@ PlayerArguments::PlayerArguments(CLI::App* app) {
 PlayerOptions PlayerArguments::Resolve() const {
   using Encoding = ImagePackerOptions::Encoding;
   PlayerOptions options = options_;
-  if (options.data_folder.empty()) throw InputError("--data FOLDER is missing");
+  if (options.data.empty()) throw InputError("--data FOLDER is missing");
   options.pace = pace_ == "lockstep" ? PlayerPace::kLockstep : PlayerPace::kRealtime;
   options.image.encoding = encoding_ == "auto"   ? Encoding::kAuto
                            : encoding_ == "jpeg" ? Encoding::kJpeg

@@ -1,0 +1,24 @@
+#ifndef AIRDOS_COMMON_EVALUATION_STATISTICS_H_
+#define AIRDOS_COMMON_EVALUATION_STATISTICS_H_
+
+#include <cstddef>
+#include <vector>
+
+namespace airdos {
+
+/// Of a set of non-negative errors, in their unit.
+struct Statistics {
+  std::size_t count = 0;
+  double rmse = 0;
+  double mean = 0;
+  double median = 0;  ///< mean of the two in the middle where the count is even
+  double max = 0;
+  double std = 0;  ///< divided by the count
+};
+
+/// All zero where there are no values.
+Statistics ComputeStatistics(std::vector<double> values);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_EVALUATION_STATISTICS_H_

@@ -1,0 +1,125 @@
+#include "common/features/feature_extractor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <opencv2/imgproc.hpp>
+
+namespace airdos {
+namespace {
+
+constexpr int kBorder_px = 20;  // of each level: the rotated ORB pattern and its smoothing must fit
+constexpr int kOrientationRadius_px = 15;
+
+/// Half width of the disc of kOrientationRadius_px at each row.
+std::array<int, kOrientationRadius_px + 1> DiscHalfWidths() {
+  std::array<int, kOrientationRadius_px + 1> widths;
+  for (int y = 0; y <= kOrientationRadius_px; ++y) {
+    widths[static_cast<std::size_t>(y)] = static_cast<int>(
+        std::sqrt(static_cast<double>(kOrientationRadius_px * kOrientationRadius_px - y * y)));
+  }
+  return widths;
+}
+
+/// Direction of the intensity centroid of the disc around (x, y), degrees.
+float IntensityCentroidAngle_deg(const cv::Mat& image, int x, int y) {
+  static const std::array<int, kOrientationRadius_px + 1> kHalfWidths = DiscHalfWidths();
+  int moment_x = 0;
+  int moment_y = 0;
+  for (int dy = -kOrientationRadius_px; dy <= kOrientationRadius_px; ++dy) {
+    const uchar* row = image.ptr<uchar>(y + dy) + x;
+    const int width = kHalfWidths[static_cast<std::size_t>(std::abs(dy))];
+    int row_sum = 0;
+    for (int dx = -width; dx <= width; ++dx) {
+      moment_x += dx * row[dx];
+      row_sum += row[dx];
+    }
+    moment_y += dy * row_sum;
+  }
+  return cv::fastAtan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
+}
+
+bool IsStronger(const cv::KeyPoint& a, const cv::KeyPoint& b) {
+  if (a.response != b.response) return a.response > b.response;
+  if (a.pt.y != b.pt.y) return a.pt.y < b.pt.y;
+  return a.pt.x < b.pt.x;
+}
+
+}  // namespace
+
+FeatureExtractor::FeatureExtractor(const FeatureExtractorOptions& options)
+    : options_(options),
+      orb_(cv::ORB::create(1, static_cast<float>(ImagePyramid::kScaleFactor), options.num_levels,
+                           kBorder_px)) {}
+
+std::vector<cv::KeyPoint> FeatureExtractor::DetectLevel(const ImagePyramid& pyramid, int level,
+                                                        const cv::Mat& mask,
+                                                        int* num_masked) const {
+  const cv::Mat& image = pyramid.level(level);
+  const cv::Rect inner(kBorder_px, kBorder_px, image.cols - 2 * kBorder_px,
+                       image.rows - 2 * kBorder_px);
+  if (inner.width <= 0 || inner.height <= 0) return {};
+  std::vector<cv::KeyPoint> corners;
+  cv::FAST(image(inner), corners, options_.fast_threshold, true);
+
+  const int num_columns = (image.cols + options_.cell_size_px - 1) / options_.cell_size_px;
+  const int num_rows = (image.rows + options_.cell_size_px - 1) / options_.cell_size_px;
+  std::vector<std::vector<cv::KeyPoint>> cells(static_cast<std::size_t>(num_columns * num_rows));
+  for (cv::KeyPoint& corner : corners) {
+    corner.pt += cv::Point2f(kBorder_px, kBorder_px);
+    const int u =
+        std::min(cvRound(pyramid.FromLevel(corner.pt.x, level)), pyramid.level(0).cols - 1);
+    const int v =
+        std::min(cvRound(pyramid.FromLevel(corner.pt.y, level)), pyramid.level(0).rows - 1);
+    if (!mask.empty() && mask.at<uchar>(v, u) != 0) {
+      ++*num_masked;
+      continue;
+    }
+    const int cell = static_cast<int>(corner.pt.y) / options_.cell_size_px * num_columns +
+                     static_cast<int>(corner.pt.x) / options_.cell_size_px;
+    cells[static_cast<std::size_t>(cell)].push_back(corner);
+  }
+
+  std::vector<cv::KeyPoint> selected;
+  for (std::vector<cv::KeyPoint>& cell : cells) {
+    const std::size_t count =
+        std::min(cell.size(), static_cast<std::size_t>(options_.max_features_per_cell));
+    std::partial_sort(cell.begin(), cell.begin() + static_cast<std::ptrdiff_t>(count), cell.end(),
+                      IsStronger);
+    for (std::size_t i = 0; i < count; ++i) {
+      cell[i].angle =
+          IntensityCentroidAngle_deg(image, cvRound(cell[i].pt.x), cvRound(cell[i].pt.y));
+      selected.push_back(cell[i]);
+    }
+  }
+  return selected;
+}
+
+std::vector<Feature> FeatureExtractor::Extract(const ImagePyramid& pyramid, const cv::Mat& mask,
+                                               int* num_masked) const {
+  *num_masked = 0;
+  std::vector<cv::KeyPoint> keypoints;
+  for (int level = 0; level < pyramid.num_levels(); ++level) {
+    for (cv::KeyPoint corner : DetectLevel(pyramid, level, mask, num_masked)) {
+      corner.pt.x = static_cast<float>(pyramid.FromLevel(corner.pt.x, level));
+      corner.pt.y = static_cast<float>(pyramid.FromLevel(corner.pt.y, level));
+      corner.octave = level;
+      corner.size = static_cast<float>(31 * pyramid.scale(level));
+      keypoints.push_back(corner);
+    }
+  }
+  cv::Mat descriptors;
+  orb_->compute(pyramid.level(0), keypoints, descriptors);  // drops what is too close to the border
+
+  std::vector<Feature> features(keypoints.size());
+  for (std::size_t i = 0; i < keypoints.size(); ++i) {
+    features[i].uv_px = {keypoints[i].pt.x, keypoints[i].pt.y};
+    features[i].level = keypoints[i].octave;
+    features[i].response = keypoints[i].response;
+    std::memcpy(features[i].descriptor.data(), descriptors.ptr(static_cast<int>(i)),
+                sizeof(Descriptor));
+  }
+  return features;
+}
+
+}  // namespace airdos

@@ -1,0 +1,42 @@
+#ifndef AIRDOS_COMMON_FEATURES_FEATURE_EXTRACTOR_H_
+#define AIRDOS_COMMON_FEATURES_FEATURE_EXTRACTOR_H_
+
+#include <opencv2/core.hpp>
+#include <opencv2/features2d.hpp>
+#include <vector>
+
+#include "common/features/feature.h"
+#include "common/features/image_pyramid.h"
+
+namespace airdos {
+
+struct FeatureExtractorOptions {
+  int num_levels = 8;
+  int fast_threshold = 8;  ///< grey levels; low, because crowded scenes leave only faint texture
+  int cell_size_px = 32;   ///< of the grid over which features are spread, at each level
+  int max_features_per_cell = 5;
+};
+
+/// FAST corners with ORB descriptors (Rublee et al. 2011), at most max_features_per_cell in each
+/// cell of each level so that they spread over the image. Sorted by level, then row-major by cell,
+/// then by response: the order is deterministic.
+class FeatureExtractor {
+ public:
+  explicit FeatureExtractor(const FeatureExtractorOptions& options);
+
+  /// `mask` (CV_8UC1, size of the image, or empty): corners on pixels that are not 0 are left out
+  /// and counted in `num_masked`.
+  std::vector<Feature> Extract(const ImagePyramid& pyramid, const cv::Mat& mask,
+                               int* num_masked) const;
+
+ private:
+  std::vector<cv::KeyPoint> DetectLevel(const ImagePyramid& pyramid, int level, const cv::Mat& mask,
+                                        int* num_masked) const;
+
+  FeatureExtractorOptions options_;
+  cv::Ptr<cv::ORB> orb_;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_FEATURES_FEATURE_EXTRACTOR_H_

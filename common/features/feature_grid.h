@@ -1,0 +1,46 @@
+#ifndef AIRDOS_COMMON_FEATURES_FEATURE_GRID_H_
+#define AIRDOS_COMMON_FEATURES_FEATURE_GRID_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "common/features/feature.h"
+
+namespace airdos {
+
+/// Finds the features around a point of the image. Keeps a reference to the features.
+class FeatureGrid {
+ public:
+  FeatureGrid(const std::vector<Feature>& features, int width_px, int height_px);
+
+  /// Calls `visit(index)` for each feature within the square of half width `radius_px`, in an order
+  /// that depends only on the features.
+  template <class Visit>
+  void ForEachNear(const Eigen::Vector2d& uv_px, double radius_px, Visit visit) const {
+    const int column_begin = Clamp(uv_px.x() - radius_px, num_columns_);
+    const int column_end = Clamp(uv_px.x() + radius_px, num_columns_);
+    const int row_begin = Clamp(uv_px.y() - radius_px, num_rows_);
+    const int row_end = Clamp(uv_px.y() + radius_px, num_rows_);
+    for (int row = row_begin; row <= row_end; ++row) {
+      for (int column = column_begin; column <= column_end; ++column) {
+        for (const int index : cells_[static_cast<std::size_t>(row * num_columns_ + column)]) {
+          const Eigen::Vector2d offset = features_[static_cast<std::size_t>(index)].uv_px - uv_px;
+          if (offset.cwiseAbs().maxCoeff() <= radius_px) visit(index);
+        }
+      }
+    }
+  }
+
+ private:
+  static constexpr double kCellSize_px = 16;
+  static int Clamp(double coordinate_px, int count);
+
+  const std::vector<Feature>& features_;
+  int num_columns_;
+  int num_rows_;
+  std::vector<std::vector<int>> cells_;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_FEATURES_FEATURE_GRID_H_

@@ -1,0 +1,82 @@
+#ifndef AIRDOS_COMMON_FEATURES_LOCAL_MAP_H_
+#define AIRDOS_COMMON_FEATURES_LOCAL_MAP_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "common/features/feature.h"
+#include "common/features/image_pyramid.h"
+#include "common/geometry/se3.h"
+#include "common/util/ids.h"
+
+namespace airdos {
+
+/// A static point of the world and how it looked when it was created.
+struct MapLandmark {
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
+  bool is_refined =
+      false;  ///< p_W comes from the optimizer; else it moves with its reference frame
+
+  FrameId reference_frame;
+  Eigen::Vector3d p_C_reference = Eigen::Vector3d::Zero();
+  std::shared_ptr<const ImagePyramid> reference_image;
+  Eigen::Vector2d reference_uv_px = Eigen::Vector2d::Zero();
+  int reference_level = 0;
+
+  Descriptor descriptor{};  ///< as last seen
+  FrameId last_seen;
+  int num_seen = 0;
+  int num_expected = 0;  ///< frames in which it lay in view and off people
+};
+
+struct LocalMapOptions {
+  int max_landmarks = 6000;
+  int max_frames_unconfirmed = 8;  ///< a landmark seen once is dropped after so many frames
+  double min_found_ratio = 0.15;   ///< of the frames it was expected in
+};
+
+/// What the optimizer says of the frames and landmarks around frame `newest` (MAP_UPDATE).
+struct MapCorrection {
+  FrameId newest;
+  std::vector<std::pair<FrameId, Se3>> frames;                        ///< T_W_C
+  std::vector<std::pair<LandmarkId, Eigen::Vector3d>> landmarks_W_m;  ///< p_W
+  std::vector<LandmarkId> removed;
+};
+
+/// The landmarks against which frames are tracked, and the poses of the recent frames.
+class LocalMap {
+ public:
+  explicit LocalMap(const LocalMapOptions& options) : options_(options) {}
+
+  std::map<LandmarkId, MapLandmark>& landmarks() { return landmarks_; }
+  const std::map<LandmarkId, MapLandmark>& landmarks() const { return landmarks_; }
+  const std::map<FrameId, Se3>& poses_W_C() const { return poses_; }
+
+  LandmarkId Add(MapLandmark landmark);
+  void SetPose(FrameId frame, const Se3& T_W_C);
+
+  /// Takes over the optimizer's poses and points. Frames newer than the correction keep their
+  /// motion relative to it, and landmarks that the optimizer has not refined move with the frame
+  /// they were created in.
+  void Apply(const MapCorrection& correction);
+
+  /// Drops what was not found again, and the longest unseen beyond the limit.
+  void Cull(FrameId now);
+
+ private:
+  static constexpr int kMaxPoses = 64;
+
+  LocalMapOptions options_;
+  std::int64_t next_id_ = 1;
+  std::map<LandmarkId, MapLandmark> landmarks_;
+  std::map<FrameId, Se3> poses_;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_FEATURES_LOCAL_MAP_H_

@@ -1,0 +1,153 @@
+#include "common/features/pose_estimator.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+
+namespace airdos {
+namespace {
+
+constexpr int kNumRounds = 4;
+constexpr int kIterationsPerRound = 6;
+constexpr double kChi2Stereo = 7.815;  // 95 % of 3 degrees of freedom
+constexpr double kChi2Mono = 5.991;    // 95 % of 2
+constexpr double kMinDepth_m = 0.05;
+constexpr double kConverged = 1e-8;
+
+struct Residual {
+  Eigen::Vector3d value;  // whitened; the last row is zero without a right observation
+  Eigen::Matrix<double, 3, 6> jacobian;
+  bool is_in_front = false;
+};
+
+/// r = (z - pi(T_C_W p_W)) / sigma with its derivative by the tangent of T_W_C: p_C(delta) ~ p_C -
+/// delta_t + [p_C]_x delta_r.
+Residual Evaluate(const StereoCamera& camera, const Se3& T_C_W,
+                  const PoseObservation& observation) {
+  Residual residual;
+  const Eigen::Vector3d p_C = T_C_W * observation.p_W;
+  residual.is_in_front = p_C.z() > kMinDepth_m;
+  if (!residual.is_in_front) return residual;
+  const double weight = 1.0 / observation.sigma_px;
+  residual.value = weight * (observation.uvu_px - camera.ProjectStereo(p_C));
+  const Eigen::Matrix3d J = -weight * camera.ProjectStereoJacobian(p_C);
+  residual.jacobian.leftCols<3>() = -J;
+  residual.jacobian.rightCols<3>() = J * Skew(p_C);
+  if (!observation.has_right) {
+    residual.value.z() = 0;
+    residual.jacobian.row(2).setZero();
+  }
+  return residual;
+}
+
+double Chi2Bound(const PoseObservation& observation) {
+  return observation.has_right ? kChi2Stereo : kChi2Mono;
+}
+
+/// Adds the prior's normal equations: e = Boxminus(T_W_C, mean) / sigma; the Jacobian is close to
+/// identity for the small e that a prior allows.
+void AddPrior(const PosePrior& prior, const Se3& T_W_C, Matrix6d* H, Vector6d* b) {
+  const Vector6d error = Boxminus(T_W_C, prior.T_W_C);
+  Vector6d information;
+  information.head<3>().setConstant(1.0 / (prior.sigma_position_m * prior.sigma_position_m));
+  information.tail<3>().setConstant(1.0 /
+                                    (prior.sigma_orientation_rad * prior.sigma_orientation_rad));
+  Matrix6d J = Matrix6d::Identity();
+  J.topLeftCorner<3, 3>() = (prior.T_W_C.rotation.conjugate() * T_W_C.rotation).toRotationMatrix();
+  J.bottomRightCorner<3, 3>() = RightJacobianInverseSo3(error.tail<3>());
+  *H += J.transpose() * information.asDiagonal() * J;
+  *b -= J.transpose() * information.asDiagonal() * error;
+}
+
+/// One Gauss-Newton step; false where the system cannot be solved.
+bool Step(const StereoCamera& camera, const std::vector<PoseObservation>& observations,
+          const std::vector<bool>& is_used, const std::optional<PosePrior>& prior, bool robust,
+          Se3* T_W_C, double* step_norm) {
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d b = Vector6d::Zero();
+  const Se3 T_C_W = T_W_C->inverse();
+  int num_used = 0;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (!is_used[i]) continue;
+    const Residual residual = Evaluate(camera, T_C_W, observations[i]);
+    if (!residual.is_in_front) continue;
+    const double norm = residual.value.norm();
+    const double huber = std::sqrt(Chi2Bound(observations[i]));
+    const double weight = robust && norm > huber ? huber / norm : 1.0;
+    H.noalias() += weight * residual.jacobian.transpose() * residual.jacobian;
+    b.noalias() -= weight * residual.jacobian.transpose() * residual.value;
+    ++num_used;
+  }
+  if (prior) AddPrior(*prior, *T_W_C, &H, &b);
+  if (!prior && num_used < 3) return false;
+  const Eigen::LDLT<Matrix6d> ldlt(H);
+  if (ldlt.info() != Eigen::Success || !ldlt.isPositive()) return false;
+  const Vector6d delta = ldlt.solve(b);
+  if (!delta.allFinite() || delta.norm() > 50) return false;
+  *T_W_C = Boxplus(*T_W_C, delta);
+  *step_norm = delta.norm();
+  return true;
+}
+
+}  // namespace
+
+PoseEstimate EstimatePose(const StereoCamera& camera,
+                          const std::vector<PoseObservation>& observations, const Se3& start,
+                          const std::optional<PosePrior>& prior) {
+  PoseEstimate estimate;
+  estimate.T_W_C = start;
+  estimate.is_inlier.assign(observations.size(), true);
+  for (int round = 0; round < kNumRounds; ++round) {
+    const bool robust = round < kNumRounds - 1;
+    for (int iteration = 0; iteration < kIterationsPerRound; ++iteration) {
+      double step_norm = 0;
+      if (!Step(camera, observations, estimate.is_inlier, prior, robust, &estimate.T_W_C,
+                &step_norm))
+        break;
+      if (step_norm < kConverged) break;
+    }
+    estimate.num_inliers = 0;
+    estimate.information.setZero();
+    const Se3 T_C_W = estimate.T_W_C.inverse();
+    for (std::size_t i = 0; i < observations.size(); ++i) {
+      const Residual residual = Evaluate(camera, T_C_W, observations[i]);
+      estimate.is_inlier[i] =
+          residual.is_in_front && residual.value.squaredNorm() <= Chi2Bound(observations[i]);
+      if (!estimate.is_inlier[i]) continue;
+      ++estimate.num_inliers;
+      estimate.information.noalias() += residual.jacobian.transpose() * residual.jacobian;
+    }
+  }
+  return estimate;
+}
+
+std::optional<Se3> EstimatePoseRansac(const StereoCamera& camera,
+                                      const std::vector<PoseObservation>& observations,
+                                      double max_error_px) {
+  constexpr int kMinPoints = 6;
+  constexpr int kMaxIterations = 300;
+  constexpr double kConfidence = 0.999;
+  if (observations.size() < static_cast<std::size_t>(kMinPoints)) return std::nullopt;
+  std::vector<cv::Point3d> points_W;
+  std::vector<cv::Point2d> points_px;
+  for (const PoseObservation& observation : observations) {
+    points_W.emplace_back(observation.p_W.x(), observation.p_W.y(), observation.p_W.z());
+    points_px.emplace_back(observation.uvu_px.x(), observation.uvu_px.y());
+  }
+  const cv::Matx33d K(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0, 1);
+  cv::Vec3d rotation_vector;
+  cv::Vec3d translation;
+  std::vector<int> inliers;
+  // OpenCV's RANSAC seeds its own generator with a constant on every call.
+  const bool found = cv::solvePnPRansac(
+      points_W, points_px, K, cv::noArray(), rotation_vector, translation, false, kMaxIterations,
+      static_cast<float>(max_error_px), kConfidence, inliers, cv::SOLVEPNP_AP3P);
+  if (!found || inliers.size() < static_cast<std::size_t>(kMinPoints)) return std::nullopt;
+  const Se3 T_C_W{ExpSo3({rotation_vector[0], rotation_vector[1], rotation_vector[2]}),
+                  {translation[0], translation[1], translation[2]}};
+  if (!T_C_W.translation.allFinite() || !T_C_W.rotation.coeffs().allFinite()) return std::nullopt;
+  return T_C_W.inverse();
+}
+
+}  // namespace airdos

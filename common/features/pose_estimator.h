@@ -1,0 +1,53 @@
+#ifndef AIRDOS_COMMON_FEATURES_POSE_ESTIMATOR_H_
+#define AIRDOS_COMMON_FEATURES_POSE_ESTIMATOR_H_
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "common/geometry/se3.h"
+#include "common/geometry/stereo_camera.h"
+
+namespace airdos {
+
+/// A known point and where one stereo frame sees it.
+struct PoseObservation {
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
+  Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();  ///< u_left, v, u_right
+  bool has_right = false;
+  double sigma_px = 1;
+};
+
+/// What is known of the pose beforehand: mean and standard deviation per axis of the tangent in C
+/// (see Boxplus).
+struct PosePrior {
+  Se3 T_W_C;
+  double sigma_position_m = 0.04;
+  double sigma_orientation_rad = 0.05;
+};
+
+struct PoseEstimate {
+  Se3 T_W_C;
+  std::vector<bool> is_inlier;  ///< per observation: chi-square within 95 %
+  int num_inliers = 0;
+  Matrix6d information =
+      Matrix6d::Zero();  ///< of the tangent, from the inliers alone: without the prior
+};
+
+/// Pose of one frame by Gauss-Newton on the stereo reprojection errors (paper, eq. 1) with Huber
+/// weights, from `start`; after each of a few rounds the observations beyond the 95 % chi-square
+/// bound are set aside, and may come back in the next. Without a prior and without enough
+/// observations the result is `start`.
+PoseEstimate EstimatePose(const StereoCamera& camera,
+                          const std::vector<PoseObservation>& observations, const Se3& start,
+                          const std::optional<PosePrior>& prior);
+
+/// A start from nothing: AP3P in RANSAC (seeded) on the left image alone. Nothing where fewer than
+/// 6 points agree.
+std::optional<Se3> EstimatePoseRansac(const StereoCamera& camera,
+                                      const std::vector<PoseObservation>& observations,
+                                      double max_error_px);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_FEATURES_POSE_ESTIMATOR_H_

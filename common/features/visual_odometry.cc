@@ -1,0 +1,411 @@
+#include "common/features/visual_odometry.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "common/features/patch.h"
+#include "common/util/check.h"
+
+namespace airdos {
+namespace {
+
+constexpr int kRecentFrames = 3;  // landmarks of so many frames are searched in the whole image
+constexpr std::size_t kNumInnovations = 20;
+constexpr int kMaxPerCell = 2;       // observed landmarks
+constexpr int kMaxTriedPerCell = 4;  // landmarks or corners that are looked for to get there
+
+double MedianOfNorms(const std::deque<Vector6d>& values, int begin) {
+  std::vector<double> norms;
+  for (const Vector6d& value : values) norms.push_back(value.segment<3>(begin).norm());
+  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
+  std::nth_element(norms.begin(), middle, norms.end());
+  return *middle;
+}
+
+/// Counts what lies in each square cell of the image.
+class CellCounter {
+ public:
+  explicit CellCounter(int cell_size_px) : cell_size_px_(cell_size_px) {}
+  bool IsFull(const Eigen::Vector2d& uv_px, int limit) const {
+    const auto it = counts_.find(CellOf(uv_px));
+    return it != counts_.end() && it->second >= limit;
+  }
+  /// False where the cell is full.
+  bool Take(const Eigen::Vector2d& uv_px, int limit) {
+    int& count = counts_[CellOf(uv_px)];
+    return count < limit && ++count > 0;
+  }
+
+ private:
+  std::pair<int, int> CellOf(const Eigen::Vector2d& uv_px) const {
+    return {static_cast<int>(uv_px.x()) / cell_size_px_,
+            static_cast<int>(uv_px.y()) / cell_size_px_};
+  }
+  int cell_size_px_;
+  std::map<std::pair<int, int>, int> counts_;
+};
+
+bool IsMasked(const cv::Mat& mask, const Eigen::Vector2d& uv_px) {
+  if (mask.empty()) return false;
+  const int u = std::clamp(static_cast<int>(std::lround(uv_px.x())), 0, mask.cols - 1);
+  const int v = std::clamp(static_cast<int>(std::lround(uv_px.y())), 0, mask.rows - 1);
+  return mask.at<uchar>(v, u) != 0;
+}
+
+}  // namespace
+
+struct VisualOdometry::View {
+  const StereoCamera& camera;
+  const StereoImages& images;
+  std::shared_ptr<const ImagePyramid> left;
+  ImagePyramid right;
+  std::vector<Feature> left_features;
+  std::vector<Feature> right_features;
+  std::unique_ptr<FeatureGrid> grid;
+  std::unique_ptr<StereoMatcher> stereo;
+  int num_masked = 0;
+
+  View(const StereoCamera& camera_in, const StereoImages& images_in,
+       const VisualOdometryOptions& options, const FeatureExtractor& extractor)
+      : camera(camera_in),
+        images(images_in),
+        left(std::make_shared<ImagePyramid>(images_in.left, options.extractor.num_levels)),
+        right(images_in.right, options.extractor.num_levels) {
+    int num_masked_right = 0;
+    left_features = extractor.Extract(*left, images.mask, &num_masked);
+    right_features = extractor.Extract(right, cv::Mat(), &num_masked_right);
+    grid = std::make_unique<FeatureGrid>(left_features, camera.width, camera.height);
+    stereo = std::make_unique<StereoMatcher>(options.stereo, camera, *left, right, right_features);
+  }
+};
+
+OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoImages& images) {
+  AIRDOS_CHECK(images.left.cols == camera.width && images.left.rows == camera.height);
+  AIRDOS_CHECK(images.right.size() == images.left.size());
+  const View view(camera, images, options_, extractor_);
+  const Se3 predicted = Predict(images.time_s);
+  const bool is_first = recent_.empty();
+
+  OdometryFrame frame;
+  frame.num_detected = static_cast<int>(view.left_features.size()) + view.num_masked;
+  frame.num_masked = view.num_masked;
+  const PosePrior prior = Prior(predicted);
+  frame.prior_sigma_position_m = prior.sigma_position_m;
+  frame.prior_sigma_orientation_rad = prior.sigma_orientation_rad;
+
+  Hypothesis best =
+      TrackFrom(view, predicted, {options_.wide_radius_px, options_.wide_max_hamming, 0.9}, prior);
+  if (const std::optional<Se3> relocated = Relocate(view)) {
+    const Hypothesis other =
+        TrackFrom(view, *relocated, {8, options_.narrow_max_hamming, 0.9}, std::nullopt);
+    if (other.num_inliers > best.num_inliers) best = other;
+  }
+  frame.num_matched = static_cast<int>(best.matches.size());
+  frame.sightings = Sight(view, best);
+
+  std::vector<PoseObservation> observations;
+  for (const LandmarkSighting& sighting : frame.sightings) {
+    observations.push_back({map_.landmarks().at(sighting.id).p_W, sighting.uvu_px,
+                            sighting.has_right, sighting.sigma_px});
+  }
+  const PoseEstimate estimate = EstimatePose(camera, observations, best.T_W_C, prior);
+  frame.T_W_C = is_first ? Se3() : estimate.T_W_C;
+  frame.state = is_first ? TrackingState::kInitializing : StateOf(estimate.num_inliers);
+  std::vector<LandmarkSighting> inliers;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (estimate.is_inlier[i]) inliers.push_back(frame.sightings[i]);
+  }
+  frame.sightings = KeepSpread(std::move(inliers));
+
+  UpdateLandmarks(view, frame.T_W_C, frame.sightings);
+  Remember(images.id, images.time_s, frame.T_W_C);
+  if (frame.state == TrackingState::kTracking) LearnFrom(estimate, prior);
+  CreateLandmarks(view, frame.T_W_C, &frame.sightings);
+  map_.Cull(images.id);
+  return frame;
+}
+
+OdometryFrame VisualOdometry::Coast(FrameId id, double time_s) {
+  OdometryFrame frame;
+  const bool is_first = recent_.empty();
+  const Se3 predicted = Predict(time_s);
+  const PosePrior prior = Prior(predicted);
+  frame.state = is_first ? TrackingState::kInitializing : TrackingState::kCoasting;
+  frame.T_W_C = predicted;
+  frame.prior_sigma_position_m = prior.sigma_position_m;
+  frame.prior_sigma_orientation_rad = prior.sigma_orientation_rad;
+  Remember(id, time_s, predicted);
+  return frame;
+}
+
+Se3 VisualOdometry::Predict(double time_s) const {
+  if (recent_.empty()) return Se3();
+  const Se3& last = map_.poses_W_C().at(recent_.back().first);
+  if (recent_.size() < 2) return last;
+  const auto& [before_id, before_time_s] = recent_[recent_.size() - 2];
+  const double last_step_s = recent_.back().second - before_time_s;
+  const double step_s = time_s - recent_.back().second;
+  // A clock that stands still or jumps says nothing of the motion: take one step as before.
+  const bool is_usable = last_step_s > 0 && step_s > 0 && step_s < 10 * last_step_s;
+  const Vector6d motion = Boxminus(last, map_.poses_W_C().at(before_id));
+  return Boxplus(last, (is_usable ? step_s / last_step_s : 1.0) * motion);
+}
+
+PosePrior VisualOdometry::Prior(const Se3& T_W_C_predicted) const {
+  // Wide until the carrier is known; then three times what the prediction was usually off by.
+  constexpr std::size_t kMinInnovations = 3;
+  PosePrior prior{T_W_C_predicted, options_.prior_max_sigma_position_m,
+                  options_.prior_max_sigma_orientation_rad};
+  if (innovations_.size() < kMinInnovations) return prior;
+  prior.sigma_position_m =
+      std::clamp(3 * MedianOfNorms(innovations_, 0), options_.prior_min_sigma_position_m,
+                 options_.prior_max_sigma_position_m);
+  prior.sigma_orientation_rad =
+      std::clamp(3 * MedianOfNorms(innovations_, 3), options_.prior_min_sigma_orientation_rad,
+                 options_.prior_max_sigma_orientation_rad);
+  return prior;
+}
+
+VisualOdometry::Hypothesis VisualOdometry::TrackFrom(const View& view, const Se3& start,
+                                                     const ProjectionSearch& first,
+                                                     const std::optional<PosePrior>& prior) const {
+  constexpr double kNarrowRadii_px[] = {8, 4};
+  Hypothesis hypothesis{start, {}, 0};
+  ProjectionSearch search = first;
+  for (int pass = 0; pass < 3; ++pass) {
+    const auto visible = FindVisible(map_, view.camera, hypothesis.T_W_C, view.left->num_levels());
+    hypothesis.matches = MatchByProjection(visible, view.left_features, *view.grid, search);
+    const PoseEstimate estimate =
+        EstimateFromMatches(view, hypothesis.matches, hypothesis.T_W_C, prior);
+    hypothesis.num_inliers = estimate.num_inliers;
+    if (estimate.num_inliers >= options_.min_inliers_weak) hypothesis.T_W_C = estimate.T_W_C;
+    std::vector<LandmarkMatch> inliers;
+    for (std::size_t i = 0; i < hypothesis.matches.size(); ++i) {
+      if (estimate.is_inlier[i]) inliers.push_back(hypothesis.matches[i]);
+    }
+    hypothesis.matches = std::move(inliers);
+    if (pass < 2) search = {kNarrowRadii_px[pass], options_.narrow_max_hamming, 0.95};
+  }
+  return hypothesis;
+}
+
+std::optional<Se3> VisualOdometry::Relocate(const View& view) const {
+  constexpr double kRansacError_px = 4;
+  if (recent_.empty()) return std::nullopt;
+  const std::size_t num_back = std::min<std::size_t>(recent_.size(), kRecentFrames);
+  const FrameId oldest = recent_[recent_.size() - num_back].first;
+  std::vector<std::pair<LandmarkId, const MapLandmark*>> candidates;
+  for (const auto& [id, landmark] : map_.landmarks()) {
+    if (!(landmark.last_seen < oldest)) candidates.emplace_back(id, &landmark);
+  }
+  const std::vector<LandmarkMatch> matches =
+      MatchByDescriptor(candidates, view.left_features, options_.wide_max_hamming, 0.85);
+  std::vector<PoseObservation> observations;
+  for (const LandmarkMatch& match : matches) {
+    const Feature& feature = view.left_features[static_cast<std::size_t>(match.feature)];
+    observations.push_back(
+        {map_.landmarks().at(match.landmark).p_W, {feature.uv_px.x(), feature.uv_px.y(), 0}});
+  }
+  return EstimatePoseRansac(view.camera, observations, kRansacError_px);
+}
+
+PoseEstimate VisualOdometry::EstimateFromMatches(const View& view,
+                                                 const std::vector<LandmarkMatch>& matches,
+                                                 const Se3& start,
+                                                 const std::optional<PosePrior>& prior) const {
+  std::vector<PoseObservation> observations;
+  for (const LandmarkMatch& match : matches) {
+    const Feature& feature = view.left_features[static_cast<std::size_t>(match.feature)];
+    observations.push_back({map_.landmarks().at(match.landmark).p_W,
+                            {feature.uv_px.x(), feature.uv_px.y(), 0},
+                            false,
+                            2 * options_.corner_sigma_px * view.left->scale(feature.level)});
+  }
+  return EstimatePose(view.camera, observations, start, prior);
+}
+
+std::vector<LandmarkSighting> VisualOdometry::Sight(const View& view,
+                                                    const Hypothesis& hypothesis) {
+  struct Candidate {
+    VisibleLandmark visible;
+    const Feature* feature;
+  };
+  std::map<LandmarkId, const Feature*> feature_of;
+  for (const LandmarkMatch& match : hypothesis.matches) {
+    feature_of[match.landmark] = &view.left_features[static_cast<std::size_t>(match.feature)];
+  }
+  std::vector<Candidate> candidates;
+  for (const VisibleLandmark& visible :
+       FindVisible(map_, view.camera, hypothesis.T_W_C, view.left->num_levels())) {
+    if (IsMasked(view.images.mask, visible.uv_px)) continue;
+    const auto match = feature_of.find(visible.id);
+    candidates.push_back({visible, match == feature_of.end() ? nullptr : match->second});
+  }
+  // Where many landmarks crowd, a few are enough: first those that were matched, then the longest
+  // known.
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) {
+                     if ((a.feature != nullptr) != (b.feature != nullptr))
+                       return a.feature != nullptr;
+                     return a.visible.landmark->num_seen > b.visible.landmark->num_seen;
+                   });
+  CellCounter cells(options_.observation_cell_px);
+  std::vector<LandmarkSighting> sightings;
+  for (const Candidate& candidate : candidates) {
+    if (!cells.Take(candidate.visible.uv_px, kMaxTriedPerCell)) continue;
+    ++map_.landmarks().at(candidate.visible.id).num_expected;
+    if (const auto sighting = SightOne(view, candidate.visible, candidate.feature))
+      sightings.push_back(*sighting);
+  }
+  std::sort(sightings.begin(), sightings.end(),
+            [](const auto& a, const auto& b) { return a.id < b.id; });
+  return sightings;
+}
+
+std::optional<LandmarkSighting> VisualOdometry::SightOne(const View& view,
+                                                         const VisibleLandmark& visible,
+                                                         const Feature* feature) const {
+  constexpr double kMaxShift_px = 4;       // of the level
+  constexpr double kMaxRightShift_px = 3;  // of the level
+  const MapLandmark& landmark = *visible.landmark;
+  const int level = visible.level;
+  LandmarkSighting sighting;
+  sighting.id = visible.id;
+  Eigen::Vector2d uv_px = feature != nullptr ? feature->uv_px : visible.uv_px;
+  const ImagePyramid& reference = *landmark.reference_image;
+  const Eigen::Vector2d reference_px(
+      reference.ToLevel(landmark.reference_uv_px.x(), landmark.reference_level),
+      reference.ToLevel(landmark.reference_uv_px.y(), landmark.reference_level));
+  const std::optional<Patch> patch =
+      Patch::Sample(reference.level(landmark.reference_level), reference_px, visible.patch_step_px);
+  std::optional<Patch::Alignment> alignment;
+  if (patch) {
+    const Eigen::Vector2d start(view.left->ToLevel(uv_px.x(), level),
+                                view.left->ToLevel(uv_px.y(), level));
+    alignment = patch->Align(view.left->level(level), start, kMaxShift_px, false);
+  }
+  if (alignment && alignment->correlation >= options_.min_correlation) {
+    uv_px = {view.left->FromLevel(alignment->centre_px.x(), level),
+             view.left->FromLevel(alignment->centre_px.y(), level)};
+    sighting.sigma_px = options_.aligned_sigma_px * view.left->scale(level);
+  } else if (feature != nullptr) {
+    sighting.sigma_px = options_.corner_sigma_px * view.left->scale(feature->level);
+  } else {
+    return std::nullopt;
+  }
+  if (IsMasked(view.images.mask, uv_px)) return std::nullopt;
+  const double u_right_guess =
+      uv_px.x() - view.camera.fx_px * view.camera.baseline_m / visible.p_C.z();
+  const auto u_right_px = view.stereo->Refine(uv_px, level, u_right_guess, kMaxRightShift_px);
+  sighting.has_right = u_right_px.has_value();
+  sighting.uvu_px = {uv_px.x(), uv_px.y(), u_right_px.value_or(0)};
+  return sighting;
+}
+
+std::vector<LandmarkSighting> VisualOdometry::KeepSpread(
+    std::vector<LandmarkSighting> sightings) const {
+  // The longest known first: they tie the new frames to the old ones.
+  std::stable_sort(sightings.begin(), sightings.end(), [this](const auto& a, const auto& b) {
+    return map_.landmarks().at(a.id).num_seen > map_.landmarks().at(b.id).num_seen;
+  });
+  CellCounter cells(options_.observation_cell_px);
+  std::vector<LandmarkSighting> kept;
+  for (const LandmarkSighting& sighting : sightings) {
+    if (kept.size() >= static_cast<std::size_t>(options_.max_observations)) break;
+    if (cells.Take(sighting.uvu_px.head<2>(), kMaxPerCell)) kept.push_back(sighting);
+  }
+  std::sort(kept.begin(), kept.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  return kept;
+}
+
+void VisualOdometry::UpdateLandmarks(const View& view, const Se3& T_W_C,
+                                     const std::vector<LandmarkSighting>& sightings) {
+  constexpr double kMinDepthRatio = 0.85;
+  constexpr double kMaxDepthRatio = 1.18;
+  const Se3 T_C_W = T_W_C.inverse();
+  for (const LandmarkSighting& sighting : sightings) {
+    MapLandmark& landmark = map_.landmarks().at(sighting.id);
+    landmark.last_seen = view.images.id;
+    ++landmark.num_seen;
+    const Eigen::Vector3d p_C = T_C_W * landmark.p_W;
+    const double depth_ratio = p_C.z() / landmark.p_C_reference.z();
+    if (depth_ratio > kMinDepthRatio && depth_ratio < kMaxDepthRatio) continue;
+    // It looks too different by now: from here on it is known by how it looks in this frame.
+    const double level_change = -std::log(depth_ratio) / std::log(ImagePyramid::kScaleFactor);
+    landmark.reference_level =
+        std::clamp(landmark.reference_level + static_cast<int>(std::lround(level_change)), 0,
+                   view.left->num_levels() - 1);
+    landmark.reference_frame = view.images.id;
+    landmark.reference_image = view.left;
+    landmark.reference_uv_px = sighting.uvu_px.head<2>();
+    landmark.p_C_reference = p_C;
+  }
+}
+
+void VisualOdometry::CreateLandmarks(const View& view, const Se3& T_W_C,
+                                     std::vector<LandmarkSighting>* sightings) {
+  CellCounter cells(options_.observation_cell_px);
+  for (const LandmarkSighting& sighting : *sightings)
+    cells.Take(sighting.uvu_px.head<2>(), kMaxPerCell);
+  std::vector<const Feature*> by_response;
+  for (const Feature& feature : view.left_features) by_response.push_back(&feature);
+  std::stable_sort(by_response.begin(), by_response.end(),
+                   [](const Feature* a, const Feature* b) { return a->response > b->response; });
+  CellCounter tried(options_.observation_cell_px);
+  for (const Feature* feature : by_response) {
+    if (sightings->size() >= static_cast<std::size_t>(options_.max_observations)) return;
+    if (cells.IsFull(feature->uv_px, kMaxPerCell) || !tried.Take(feature->uv_px, kMaxTriedPerCell))
+      continue;
+    const std::optional<double> u_right_px = view.stereo->Match(*feature);
+    if (!u_right_px) continue;
+    const auto p_C = view.camera.Triangulate(feature->uv_px.x(), feature->uv_px.y(), *u_right_px);
+    if (!p_C) continue;
+    cells.Take(feature->uv_px, kMaxPerCell);
+    MapLandmark landmark;
+    landmark.p_W = T_W_C * *p_C;
+    landmark.reference_frame = view.images.id;
+    landmark.p_C_reference = *p_C;
+    landmark.reference_image = view.left;
+    landmark.reference_uv_px = feature->uv_px;
+    landmark.reference_level = feature->level;
+    landmark.descriptor = feature->descriptor;
+    landmark.last_seen = view.images.id;
+    landmark.num_seen = 1;
+    landmark.num_expected = 1;
+    const LandmarkId id = map_.Add(std::move(landmark));
+    sightings->push_back({id,
+                          {feature->uv_px.x(), feature->uv_px.y(), *u_right_px},
+                          true,
+                          options_.aligned_sigma_px * view.left->scale(feature->level)});
+  }
+}
+
+void VisualOdometry::Remember(FrameId id, double time_s, const Se3& T_W_C) {
+  map_.SetPose(id, T_W_C);
+  recent_.emplace_back(id, time_s);
+  if (recent_.size() > kRecentFrames) recent_.pop_front();
+}
+
+void VisualOdometry::LearnFrom(const PoseEstimate& estimate, const PosePrior& prior) {
+  // A frame that sees little is off because it sees little: it must not loosen the prior that it
+  // needs most.
+  const Eigen::LDLT<Matrix6d> ldlt(estimate.information);
+  if (ldlt.info() != Eigen::Success || !ldlt.isPositive()) return;
+  const Matrix6d covariance = ldlt.solve(Matrix6d::Identity());
+  const double sigma_position_m = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+  const double sigma_orientation_rad = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  if (!(sigma_position_m < 0.5 * prior.sigma_position_m)) return;
+  if (!(sigma_orientation_rad < 0.5 * prior.sigma_orientation_rad)) return;
+  innovations_.push_back(Boxminus(estimate.T_W_C, prior.T_W_C));
+  if (innovations_.size() > kNumInnovations) innovations_.pop_front();
+}
+
+TrackingState VisualOdometry::StateOf(int num_inliers) const {
+  if (num_inliers >= options_.min_inliers_tracking) return TrackingState::kTracking;
+  return num_inliers >= options_.min_inliers_weak ? TrackingState::kWeak : TrackingState::kCoasting;
+}
+
+}  // namespace airdos

@@ -1,0 +1,125 @@
+#ifndef AIRDOS_COMMON_FEATURES_VISUAL_ODOMETRY_H_
+#define AIRDOS_COMMON_FEATURES_VISUAL_ODOMETRY_H_
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "common/features/feature_extractor.h"
+#include "common/features/landmark_matcher.h"
+#include "common/features/local_map.h"
+#include "common/features/pose_estimator.h"
+#include "common/features/stereo_matcher.h"
+#include "common/geometry/stereo_camera.h"
+
+namespace airdos {
+
+struct VisualOdometryOptions {
+  FeatureExtractorOptions extractor;
+  StereoMatcherOptions stereo;
+  LocalMapOptions map;
+  double wide_radius_px = 30;     ///< first search around the constant-velocity prediction
+  int wide_max_hamming = 64;      ///< bits
+  int narrow_max_hamming = 90;    ///< bits
+  int min_inliers_tracking = 20;  ///< fewer: STATE_WEAK
+  int min_inliers_weak = 4;       ///< fewer: STATE_COASTING
+  double min_correlation = 0.8;   ///< of a landmark's patch with the image
+  double aligned_sigma_px = 0.5;  ///< of an aligned patch at level 0; grows with the level
+  double corner_sigma_px = 1.0;   ///< of a corner whose patch did not align
+  int max_observations = 300;     ///< of landmarks a frame
+  int observation_cell_px = 16;   ///< at most two observed landmarks in each cell of this size
+  double prior_min_sigma_position_m = 0.03;
+  double prior_max_sigma_position_m = 1.0;
+  double prior_min_sigma_orientation_rad = 0.03;
+  double prior_max_sigma_orientation_rad = 0.5;
+};
+
+enum class TrackingState { kInitializing, kTracking, kWeak, kCoasting };
+
+/// One stereo frame; images are CV_8UC1 of the camera's size.
+struct StereoImages {
+  FrameId id;
+  double time_s = 0;  ///< capture time
+  cv::Mat left;
+  cv::Mat right;
+  cv::Mat mask;  ///< of the left image, not 0 = no static feature may come from here; or empty
+};
+
+struct LandmarkSighting {
+  LandmarkId id;
+  Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();
+  bool has_right = false;
+  double sigma_px = 1;
+};
+
+struct OdometryFrame {
+  TrackingState state = TrackingState::kInitializing;
+  Se3 T_W_C;
+  double prior_sigma_position_m = 0;
+  double prior_sigma_orientation_rad = 0;
+  int num_detected = 0;
+  int num_masked = 0;
+  int num_matched = 0;
+  std::vector<LandmarkSighting> sightings;  ///< ordered by id
+};
+
+/// Stereo odometry against a local map: the constant-velocity prediction and a descriptor search
+/// over the whole image are two hypotheses for the pose, of which the one with more support is
+/// kept; each landmark is then found again to a fraction of a pixel by its own patch. It never
+/// resets: without support it coasts on the prediction and goes on matching the whole map. W is the
+/// first left camera.
+class VisualOdometry {
+ public:
+  explicit VisualOdometry(const VisualOdometryOptions& options)
+      : options_(options), extractor_(options.extractor), map_(options.map) {}
+
+  OdometryFrame Process(const StereoCamera& camera, const StereoImages& images);
+  /// A frame without usable images: coasts.
+  OdometryFrame Coast(FrameId id, double time_s);
+  void Apply(const MapCorrection& correction) { map_.Apply(correction); }
+
+  const LocalMap& map() const { return map_; }
+
+ private:
+  struct View;  // what is computed once for a frame
+
+  struct Hypothesis {
+    Se3 T_W_C;
+    std::vector<LandmarkMatch> matches;
+    int num_inliers = 0;
+  };
+
+  Se3 Predict(double time_s) const;
+  PosePrior Prior(const Se3& T_W_C_predicted) const;
+  Hypothesis TrackFrom(const View& view, const Se3& start, const ProjectionSearch& first,
+                       const std::optional<PosePrior>& prior) const;
+  std::optional<Se3> Relocate(const View& view) const;
+  PoseEstimate EstimateFromMatches(const View& view, const std::vector<LandmarkMatch>& matches,
+                                   const Se3& start, const std::optional<PosePrior>& prior) const;
+  std::vector<LandmarkSighting> Sight(const View& view, const Hypothesis& hypothesis);
+  std::optional<LandmarkSighting> SightOne(const View& view, const VisibleLandmark& visible,
+                                           const Feature* feature) const;
+  std::vector<LandmarkSighting> KeepSpread(std::vector<LandmarkSighting> sightings) const;
+  void UpdateLandmarks(const View& view, const Se3& T_W_C,
+                       const std::vector<LandmarkSighting>& sightings);
+  void CreateLandmarks(const View& view, const Se3& T_W_C,
+                       std::vector<LandmarkSighting>* sightings);
+  void Remember(FrameId id, double time_s, const Se3& T_W_C);
+  /// Notes by how much the prediction was off, if the frame's own measurements say it better than
+  /// the prior did.
+  void LearnFrom(const PoseEstimate& estimate, const PosePrior& prior);
+  TrackingState StateOf(int num_inliers) const;
+
+  const VisualOdometryOptions options_;
+  FeatureExtractor extractor_;
+  LocalMap map_;
+  std::deque<std::pair<FrameId, double>> recent_;  // frame and time, newest last
+  std::deque<Vector6d> innovations_;  // pose minus prediction of the last tracked frames
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_FEATURES_VISUAL_ODOMETRY_H_

@@ -1,0 +1,65 @@
+#ifndef AIRDOS_COMMON_OPTIMIZATION_BUNDLE_ADJUSTER_H_
+#define AIRDOS_COMMON_OPTIMIZATION_BUNDLE_ADJUSTER_H_
+
+#include "common/optimization/bundle_problem.h"
+
+namespace airdos {
+
+/// How the motion of people enters (paper, eq. 4, 5).
+enum class MotionForm {
+  kVelocity,       ///< torso and head share one velocity per frame pair, smoothed over time
+  kVelocityTrack,  ///< torso and head share one velocity over the whole window
+  kSe3Parts,       ///< the paper's: one rigid motion per rigid part and frame pair
+};
+
+struct BundleOptions {
+  bool use_people = true;
+  bool use_rigidity = true;
+  bool use_motion = true;
+  MotionForm motion_form = MotionForm::kVelocity;
+
+  // Solver. Only iterations are limited, never time: the result must not depend on the machine.
+  int max_iterations = 6;                    ///< of the first pass
+  int max_iterations_after_elimination = 4;  ///< of the pass after elimination; 0: no elimination
+  double function_tolerance = 1e-5;          ///< relative change of cost that ends a pass
+
+  // Huber kernels, in standard deviations of the residual's norm.
+  double huber_static = 2.5;
+  double huber_dynamic = 2.0;
+
+  // Factor elimination: a factor whose whitened error is larger is dropped before the second pass.
+  double eliminate_static = 4.0;
+  double eliminate_joint = 4.0;
+  double eliminate_rigidity = 4.0;
+  double eliminate_motion = 4.0;
+
+  // People.
+  double rigidity_sigma_m = 0.015;
+  double motion_sigma_m = 0.05;
+  double velocity_change_sigma_m_s = 0.3;     ///< between consecutive frame pairs (kVelocity)
+  double part_free_rotation_sigma_rad = 0.1;  ///< about a two-point part's own axis (kSe3Parts)
+};
+
+struct BundleSummary {
+  bool has_converged = false;  ///< the last pass met its tolerance within its iterations
+  int num_iterations = 0;      ///< of all passes
+  double initial_cost = 0;     ///< half the sum of squared whitened residuals, kernels applied
+  double final_cost = 0;
+  int num_people = 0;  ///< with factors
+  int num_rigidity = 0;
+  int num_motion = 0;
+  int num_rigidity_eliminated = 0;
+  int num_motion_eliminated = 0;
+  int num_reprojection_eliminated = 0;  ///< landmarks and joints
+};
+
+/// Bundle adjustment over camera poses, static landmarks and, if `use_people`, their joints,
+/// segment lengths and motions (paper, eq. 6): Levenberg-Marquardt, then elimination of factors
+/// with large errors, then Levenberg-Marquardt again. Overwrites the start values in `problem` with
+/// the result and marks eliminated factors. Frames that are fixed do not change. A problem without
+/// any free unknown comes back as it is. Deterministic: one thread, order of the vectors.
+BundleSummary SolveBundle(const BundleOptions& options, BundleProblem* problem);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_OPTIMIZATION_BUNDLE_ADJUSTER_H_

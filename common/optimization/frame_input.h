@@ -1,0 +1,46 @@
+#ifndef AIRDOS_COMMON_OPTIMIZATION_FRAME_INPUT_H_
+#define AIRDOS_COMMON_OPTIMIZATION_FRAME_INPUT_H_
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "common/geometry/se3.h"
+#include "common/util/ids.h"
+
+namespace airdos {
+
+/// A static landmark as the front end saw it in one frame.
+struct StaticObservation {
+  LandmarkId id;
+  Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();  ///< u_left, v, u_right
+  bool has_right = true;                             ///< if false, u_right is not a measurement
+  double sigma_px = 1;
+};
+
+/// One joint of one person in one frame.
+struct JointObservation {
+  int joint = 0;  ///< COCO-18, 0..13
+  Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();
+  double sigma_px = 1;
+};
+
+struct HumanObservation {
+  HumanId id;
+  std::vector<JointObservation> joints;  ///< sorted by joint, each at most once
+};
+
+/// Everything that was measured in one stereo frame.
+struct FrameInput {
+  FrameId id;
+  double time_s = 0;
+  /// The front end's pose. That of the first frame defines W; after it only the change from frame
+  /// to frame is used. Nothing where the front end said nothing.
+  std::optional<Se3> T_W_C_odometry;
+  std::vector<StaticObservation> features;
+  std::vector<HumanObservation> humans;  ///< sorted by id
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_OPTIMIZATION_FRAME_INPUT_H_

@@ -1,0 +1,120 @@
+#ifndef AIRDOS_COMMON_OPTIMIZATION_SLIDING_WINDOW_H_
+#define AIRDOS_COMMON_OPTIMIZATION_SLIDING_WINDOW_H_
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "common/geometry/stereo_camera.h"
+#include "common/optimization/bundle_adjuster.h"
+#include "common/optimization/frame_input.h"
+#include "common/optimization/window_map.h"
+
+namespace airdos {
+
+struct CameraMotionOptions {
+  bool use_acceleration = true;  ///< factor between three consecutive frames of the window
+  /// The sigma follows the carrier: `sigma_factor` times the robust spread of the accelerations of
+  /// the last frames, within [floor, ceiling]; no factor before `min_frames` frames.
+  double sigma_factor = 2.0;
+  AccelerationSigma floor{2.0, 5.0};
+  AccelerationSigma ceiling{50.0, 100.0};
+  int min_frames = 8;
+  int history_frames = 40;
+};
+
+struct SlidingWindowOptions {
+  WindowMapOptions map;
+  BundleOptions bundle;  ///< `use_people` is the switch people: on
+  CameraMotionOptions camera_motion;
+  double publish_moved_m = 1e-4;  ///< a landmark that moved less is not reported again
+};
+
+/// The optimizer's answer about the newest frame.
+struct FrameEstimate {
+  enum class Status { kFirstFrame, kConverged, kNotConverged, kPredicted };
+  FrameId id;
+  Status status = Status::kPredicted;
+  Se3 T_W_C;                               ///< the trusted one of the two below
+  Matrix6d covariance = Matrix6d::Zero();  ///< of its tangent, see common/geometry/se3.h
+  bool trusts_people = false;
+  Se3 T_W_C_without_people;
+  Se3 T_W_C_with_people;  ///< equals the one without where people are off or not in view
+  int num_window_frames = 0;
+  int num_static_landmarks = 0;     ///< in the adjustment
+  int num_static_observations = 0;  ///< of the newest frame
+  BundleSummary summary;
+};
+
+/// What one frame changed in the map, in W.
+struct MapChanges {
+  struct FramePose {
+    FrameId id;
+    double time_s = 0;
+    Se3 T_W_C;
+  };
+  struct Landmark {
+    LandmarkId id;
+    Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
+    double sigma_m = 0;  ///< standard deviation along the worst direction, poses taken as known
+    int num_observations = 0;
+  };
+  std::vector<FramePose> frames;    ///< the window, newest last
+  std::vector<Landmark> landmarks;  ///< new or moved, sorted by id
+  std::vector<LandmarkId> removed;  ///< bad and gone, sorted
+};
+
+struct FrameResult {
+  FrameEstimate estimate;
+  MapChanges changes;
+};
+
+/// Bundle adjustment on every frame over a co-visibility window (paper, eq. 6). A plain library: no
+/// messages, no clock; the same inputs give the same answers bit by bit.
+///
+/// The newest frame starts at the last optimized pose moved by the front end's odometry; a frame
+/// without odometry at constant velocity. A frame that sees no static landmark of the map keeps
+/// that start as its answer (kPredicted) unless people carry it.
+class SlidingWindowOptimizer {
+ public:
+  SlidingWindowOptimizer(const SlidingWindowOptions& options, const StereoCamera& camera);
+
+  /// Frames must come in order of their ids.
+  FrameResult Process(const FrameInput& input);
+
+ private:
+  struct TimedPose {
+    FrameId id;
+    double time_s;
+    Se3 T_W_C;
+  };
+
+  /// Where the newest frame should be, seen from an older one.
+  struct Prediction {
+    FrameId base;
+    Se3 T_Cbase_C;
+  };
+
+  Prediction Predict(const FrameInput& input) const;
+  /// As optimized; the frame must be one of the last `history_frames`.
+  const Se3& PoseOf(FrameId id) const;
+  /// Adjustment without people; fills the estimate but for its poses. Returns the bad landmarks.
+  std::vector<LandmarkId> SolveStatic(BundleProblem* problem, FrameEstimate* estimate);
+  void AddAccelerations(BundleProblem* problem) const;
+  std::optional<AccelerationSigma> EstimateAccelerationSigma() const;
+  /// The poses of the window into the trajectory.
+  void UpdateTrajectory();
+  MapChanges CollectChanges(std::vector<LandmarkId> removed);
+  MapChanges::Landmark DescribeLandmark(LandmarkId id) const;
+
+  SlidingWindowOptions options_;
+  StereoCamera camera_;
+  WindowMap map_;
+  std::deque<TimedPose> trajectory_;  // the last frames, oldest first, as optimized
+  FrameId odometry_frame_;            // the last one with odometry
+  std::optional<Se3> T_W_C_odometry_;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_OPTIMIZATION_SLIDING_WINDOW_H_

@@ -1,0 +1,26 @@
+#ifndef AIRDOS_COMMON_UTIL_TEXT_FILE_H_
+#define AIRDOS_COMMON_UTIL_TEXT_FILE_H_
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace airdos {
+
+/// A line of a text file: its number (from 1) and its words.
+struct TextLine {
+  int number = 0;
+  std::vector<std::string> words;
+};
+
+/// The lines that are neither empty nor a comment (#). Throws InputError naming the file where it
+/// cannot be read.
+std::vector<TextLine> ReadTextLines(const std::string& path);
+
+/// The words from number `first` on as finite numbers. Throws InputError naming file, line and
+/// word.
+std::vector<double> ParseNumbers(const std::string& path, const TextLine& line, std::size_t first);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_UTIL_TEXT_FILE_H_

@@ -1,0 +1,74 @@
+# shellcheck shell=bash disable=SC2034
+# Shared by the launch scripts: the project's folder, messages, network namespaces. To be sourced.
+
+AIRDOS_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# In the source tree or installed (share/airdos/scripts).
+if [[ -e $AIRDOS_ROOT/CMakeLists.txt ]]; then
+  AIRDOS_BIN=${AIRDOS_BIN:-$AIRDOS_ROOT/build/bin}
+  AIRDOS_RUNS=$AIRDOS_ROOT/logs/runs
+else
+  AIRDOS_BIN=${AIRDOS_BIN:-$AIRDOS_ROOT/../../bin}
+  AIRDOS_RUNS=${XDG_STATE_HOME:-$HOME/.local/state}/airdos/runs
+fi
+AIRDOS_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=0'
+# What a camera and the detectors say; a log may hold more.
+AIRDOS_CAMERA_CHANNELS='^(CAMERA_LEFT|CAMERA_RIGHT|CALIBRATION|PERSON_KEYPOINTS_LEFT|PERSON_KEYPOINTS_RIGHT|PERSON_MASK|GROUND_TRUTH)$'
+readonly AIRDOS_ROOT AIRDOS_BIN AIRDOS_RUNS AIRDOS_DEFAULT_URL AIRDOS_CAMERA_CHANNELS
+
+readonly EXIT_BAD_INPUT=2
+
+say() { printf '%s: %s\n' "$(basename "$0")" "$*"; }
+
+# One line on stderr, exit 1: it could not be done.
+die() {
+  say "$*" >&2
+  exit 1
+}
+
+# One line on stderr, exit 2: a wrong option, file or value.
+die_usage() {
+  say "$*" >&2
+  exit "$EXIT_BAD_INPUT"
+}
+
+# The comment at the top of the script is its help.
+print_help() { sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"; }
+
+# need_value "$@": the option in $1 must be followed by its value.
+need_value() { (($# >= 2)) || die_usage "$1 needs a value (see --help)"; }
+
+need_program() {
+  [[ -x $AIRDOS_BIN/$1 ]] || die "$AIRDOS_BIN/$1 is missing: build first with launch_scripts/setup.sh"
+}
+
+# Runs a command in a network namespace of its own, in which multicast stays on the machine's loopback. Without root, it
+# takes a user namespace as well.
+run_in_new_network() {
+  local -a unshare=(unshare -n)
+  "${unshare[@]}" true 2> /dev/null || unshare=(unshare -r -n)
+  "${unshare[@]}" true 2> /dev/null ||
+    die "cannot make a network namespace (no root, no user namespaces); --host-network does without"
+  # shellcheck disable=SC2016
+  exec "${unshare[@]}" bash -c '
+    ip link set lo up
+    ip link set lo multicast on
+    ip route add 224.0.0.0/4 dev lo
+    exec "$@"' _ "$@"
+}
+
+# enter_network PID: fills the array ENTER_NETWORK with the command that enters the namespace of that process.
+enter_network() {
+  local pid=$1
+  [[ $pid =~ ^[0-9]+$ ]] || die_usage "not a process number: '$pid'"
+  [[ -e /proc/$pid/ns/net ]] || die "process $pid does not run (any more)"
+  if [[ $(readlink "/proc/$pid/ns/net") == "$(readlink /proc/self/ns/net)" ]]; then
+    ENTER_NETWORK=()
+  elif ((EUID == 0)); then
+    ENTER_NETWORK=(nsenter -t "$pid" -n --)
+  else
+    ENTER_NETWORK=(nsenter -t "$pid" -U --preserve-credentials -n --)
+  fi
+}
+
+# state_of KEY FOLDER: what run_live.sh wrote down about its run.
+state_of() { sed -n "s/^$1=//p" "$2/state"; }

@@ -1,0 +1,210 @@
+#!/bin/bash
+# Runs the processes as they are meant to be: separately, on one LCM URL.
+#
+# Usage: launch_scripts/run_live.sh [--data FOLDER | --log FILE] [options]
+#   --data FOLDER         also start the player on this data set, and end when everything has been worked on
+#   --log FILE            also play this LCM log (only what came from the camera), and end likewise
+#   --speed X             of --log: 1 as recorded, 2 twice as fast, 0 as fast as possible (default 1)
+#   --pace lockstep|realtime
+#                         lockstep: nothing is lost; realtime: the newest image counts (default lockstep)
+#   --lcm-url URL         (default udpm://239.255.76.67:7667?ttl=0)
+#   --run-dir FOLDER      where logs and results go (default logs/runs/<time>; logs/runs/latest points there)
+#   --host-network        run in this machine's own network instead of a namespace of its own
+#   --help                this text
+#
+# Without --data and --log it runs until Ctrl-C and waits for images. Each process' messages go to <run-dir>/<process>.log.
+# Exit 0 if all processes ended well.
+set -euo pipefail
+# shellcheck source=launch_scripts/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+readonly PROCESSES=(frontend human-tracker optimizer map-recorder)
+readonly READY_DEADLINE_S=30
+readonly STOP_DEADLINE_S=20
+# A frame that lacks an input is completed after 5 s (--deadline-s), so a shorter silence does not mean the end.
+readonly IDLE_S=6
+readonly DRAIN_DEADLINE_S=600
+
+data='' log='' speed=1 pace=lockstep url=$AIRDOS_DEFAULT_URL run_dir='' host_network=no is_inside=no
+original_arguments=("$@")
+while (($# > 0)); do
+  case $1 in
+    --data | --log | --speed | --pace | --lcm-url | --run-dir)
+      need_value "$@"
+      name=${1#--}
+      printf -v "${name//-/_}" '%s' "$2"
+      shift
+      ;;
+    --host-network) host_network=yes ;;
+    --inside) is_inside=yes ;; # for the script's own use: the namespace is made
+    --help | -h)
+      print_help
+      exit 0
+      ;;
+    *) die_usage "unknown option '$1' (see --help)" ;;
+  esac
+  shift
+done
+# shellcheck disable=SC2154  # --lcm-url fills lcm_url
+url=${lcm_url:-$url}
+[[ -z $data || -z $log ]] || die_usage "--data and --log exclude each other"
+[[ -z $data || -d $data ]] || die_usage "--data: no folder '$data'"
+[[ -z $log || -f $log ]] || die_usage "--log: no file '$log'"
+[[ $speed =~ ^[0-9]+(\.[0-9]+)?$ ]] || die_usage "--speed: not a number: '$speed'"
+[[ $pace == lockstep || $pace == realtime ]] || die_usage "--pace: '$pace' is neither lockstep nor realtime"
+for process in "${PROCESSES[@]}"; do need_program "airdos-$process"; done
+if [[ -n $data ]]; then need_program airdos-stereo-player; fi
+if [[ -n $log ]]; then
+  command -v lcm-logplayer > /dev/null || die "lcm-logplayer is missing: 'apt-get install liblcm-bin'"
+fi
+
+if [[ $is_inside == no ]]; then
+  if [[ -z $run_dir ]]; then
+    run_dir=$AIRDOS_RUNS/$(date +%Y%m%d_%H%M%S)_$$
+    mkdir -p "$run_dir"
+    ln -sfn "$(basename "$run_dir")" "$AIRDOS_RUNS/latest"
+    original_arguments+=(--run-dir "$run_dir")
+  fi
+  mkdir -p "$run_dir"
+  if [[ $host_network == yes ]]; then
+    "$(dirname "$0")/network_setup.sh" --check || die "--host-network: the network is not fit for LCM (see above)"
+  else
+    run_in_new_network "$0" "${original_arguments[@]}" --inside
+  fi
+fi
+
+declare -A pids=() exit_codes=()
+stopping=no
+trap 'stopping=yes' INT TERM
+
+# start NAME PROGRAM ARGUMENTS…: in a session of its own, so that Ctrl-C reaches this script only and the processes are
+# stopped in order; they end with this script even if that is killed.
+start() {
+  local name=$1
+  shift
+  setsid setpriv --pdeathsig TERM -- "$@" > "$run_dir/$name.log" 2>&1 < /dev/null &
+  pids[$name]=$!
+  echo "$name=${pids[$name]}" >> "$run_dir/state"
+}
+
+is_running() { [[ -e /proc/${pids[$1]}/stat ]] && ! grep -q '^State:[[:space:]]*Z' "/proc/${pids[$1]}/status" 2> /dev/null; }
+
+collect() {
+  local code=0
+  wait "${pids[$1]}" || code=$?
+  exit_codes[$1]=$code
+}
+
+# stop NAME: SIGTERM, and SIGKILL only if it does not end.
+stop() {
+  local name=$1 deadline=$((SECONDS + STOP_DEADLINE_S))
+  [[ -z ${exit_codes[$name]:-} ]] || return 0
+  kill -TERM "${pids[$name]}" 2> /dev/null || true
+  while is_running "$name"; do
+    if ((SECONDS >= deadline)); then
+      say "$name did not end within $STOP_DEADLINE_S s: killed"
+      kill -KILL "${pids[$name]}" 2> /dev/null || true
+      break
+    fi
+    sleep 0.05
+  done
+  collect "$name"
+}
+
+# Sources first, the recorder last, so that it keeps what the others still say.
+finish() {
+  local name bad=0
+  for name in player "${PROCESSES[@]}"; do
+    if [[ -n ${pids[$name]:-} ]]; then stop "$name"; fi
+  done
+  for name in "${!exit_codes[@]}"; do
+    say "$name: exit code ${exit_codes[$name]}"
+    ((exit_codes[$name] == 0)) || bad=1
+  done
+  say "results and logs: $run_dir"
+  exit "$bad"
+}
+
+wait_until_ready() {
+  local name=$1 deadline=$((SECONDS + READY_DEADLINE_S))
+  until grep -q ' READY ' "$run_dir/$name.log"; do
+    if ! is_running "$name"; then
+      tail -n 5 "$run_dir/$name.log" >&2
+      say "$name ended before it was ready" >&2
+      finish
+    fi
+    ((SECONDS < deadline)) || { say "$name is not READY after $READY_DEADLINE_S s" >&2 && finish; }
+    [[ $stopping == no ]] || finish
+    sleep 0.05
+  done
+}
+
+# Processor time of all processes so far, in clock ticks.
+ticks() {
+  local name sum=0 stat
+  for name in "${PROCESSES[@]}"; do
+    stat=$(cat "/proc/${pids[$name]}/stat" 2> /dev/null) || continue
+    read -ra stat <<< "${stat##*) }"
+    sum=$((sum + stat[11] + stat[12]))
+  done
+  echo "$sum"
+}
+
+# Until nobody has worked for IDLE_S: heartbeats cost less than two ticks in half a second, frames more.
+wait_until_idle() {
+  local now last quiet_since=$SECONDS deadline=$((SECONDS + DRAIN_DEADLINE_S))
+  last=$(ticks)
+  while ((SECONDS - quiet_since < IDLE_S)) && [[ $stopping == no ]]; do
+    ((SECONDS < deadline)) || { say "the processes are still busy after $DRAIN_DEADLINE_S s" && return; }
+    sleep 0.5
+    now=$(ticks)
+    if ((now - last > 2)); then quiet_since=$SECONDS; fi
+    last=$now
+  done
+}
+
+# report_ended: whoever ended is named once; the others go on.
+report_ended() {
+  local name
+  for name in "${PROCESSES[@]}"; do
+    if [[ -z ${exit_codes[$name]:-} ]] && ! is_running "$name"; then
+      collect "$name"
+      say "$name ended with exit code ${exit_codes[$name]}; the others go on. To start it again:"
+      say "  nsenter -t $$ -n -- $AIRDOS_BIN/airdos-$name --lcm-url '$url' --pace $pace"
+    fi
+  done
+}
+
+{
+  echo "pid=$$"
+  echo "url=$url"
+} > "$run_dir/state"
+
+arguments=(--lcm-url "$url" --pace "$pace")
+start frontend "$AIRDOS_BIN/airdos-frontend" "${arguments[@]}"
+start human-tracker "$AIRDOS_BIN/airdos-human-tracker" "${arguments[@]}"
+start optimizer "$AIRDOS_BIN/airdos-optimizer" "${arguments[@]}"
+start map-recorder "$AIRDOS_BIN/airdos-map-recorder" "${arguments[@]}" --set "output.directory=$run_dir"
+for process in "${PROCESSES[@]}"; do wait_until_ready "$process"; done
+say "READY: ${PROCESSES[*]} on $url"
+if [[ $host_network == no ]]; then
+  say "their network: nsenter -t $$ -n -- COMMAND; or spy.sh --namespace $$, replay_log.sh LOG --run $run_dir"
+fi
+
+if [[ -n $data ]]; then
+  start player "$AIRDOS_BIN/airdos-stereo-player" --data "$data" "${arguments[@]}"
+elif [[ -n $log ]]; then
+  start player lcm-logplayer -s "$speed" -e "$AIRDOS_CAMERA_CHANNELS" -l "$url" "$log"
+fi
+while [[ $stopping == no ]]; do
+  if [[ -n ${pids[player]:-} ]] && ! is_running player; then
+    collect player
+    say "everything has been sent; waiting for the processes"
+    wait_until_idle
+    break
+  fi
+  report_ended
+  ((${#exit_codes[@]} < ${#PROCESSES[@]})) || break
+  sleep 0.2
+done
+finish

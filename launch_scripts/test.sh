@@ -1,0 +1,66 @@
+#!/bin/bash
+# Installs what is missing, builds, and runs all tests: the unit, numeric and node tests under the address and
+# undefined-behaviour sanitizers, then everything in the normal build.
+#
+# Usage: launch_scripts/test.sh [--no-sanitizers]
+#   --no-sanitizers  only the normal build
+#   --help           this text
+#
+# Exit 0 if nothing failed. Tests that were skipped are listed with their reasons.
+set -euo pipefail
+# shellcheck source=launch_scripts/setup.sh
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+
+readonly SANITIZED_TIERS='unit numeric node'
+
+sanitizers=yes
+while (($# > 0)); do
+  case $1 in
+    --no-sanitizers) sanitizers=no ;;
+    --help | -h)
+      print_help
+      exit 0
+      ;;
+    *) die_usage "unknown option '$1' (see --help)" ;;
+  esac
+  shift
+done
+
+# print_skipped FOLDER: name and reason of each skipped test, from ctest's own log of the last run.
+print_skipped() {
+  awk '
+    /^[0-9]+\/[0-9]+ Test: /  { name = $3; reason = ""; skipped = next_is_reason = 0 }
+    next_is_reason            { reason = $0; next_is_reason = 0 }
+    /: Skipped$/              { skipped = next_is_reason = 1 }  # as GoogleTest says it
+    /^SKIPPED: /              { skipped = 1; reason = substr($0, 10) }  # as our scripts say it
+    /^<end of output>$/       { if (skipped) print "  skipped: " name ": " reason; skipped = 0 }
+    ' "$1/Testing/Temporary/LastTest.log"
+}
+
+# run_tests FOLDER [CTEST OPTIONS…]: as ctest does it, but with the reasons for skips, and the closing line last.
+run_tests() {
+  local folder=$1 failed=no
+  shift
+  ctest --test-dir "$folder" --output-on-failure --no-label-summary -j "$(nproc)" "$@" 2>&1 < /dev/null |
+    tee "$folder/ctest.log" | sed '/% tests passed,/,$d' || failed=yes
+  sed '1,/% tests passed,/d; /^Errors while running CTest/d; /^$/d' "$folder/ctest.log"
+  print_skipped "$folder"
+  grep '% tests passed,' "$folder/ctest.log" || die "ctest came to no result (log: $folder/ctest.log)"
+  [[ $failed == no ]]
+}
+
+install_packages
+failures=0
+
+if [[ $sanitizers == yes ]]; then
+  # -O1 -g1: the sanitizers stay bearable on code that leans on Eigen's inlining, and say line numbers.
+  configure_and_build "$AIRDOS_ROOT/build-sanitize" "airdos_tests_${SANITIZED_TIERS// / airdos_tests_}" \
+    -DAIRDOS_SANITIZE=ON -DAIRDOS_BUILD_JAVA=OFF -DCMAKE_BUILD_TYPE=Sanitize "-DCMAKE_CXX_FLAGS_SANITIZE=-O1 -g1"
+  say "tests under sanitizers"
+  run_tests "$AIRDOS_ROOT/build-sanitize" -L "^(${SANITIZED_TIERS// /|})\$" || failures=1
+fi
+
+configure_and_build "$AIRDOS_ROOT/build" all -DCMAKE_BUILD_TYPE=Release
+if ((failures > 0)); then say "tests FAILED under the sanitizers (see above); now the others"; fi
+run_tests "$AIRDOS_ROOT/build" || failures=1
+exit "$failures"

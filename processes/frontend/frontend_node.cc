@@ -1,0 +1,214 @@
+#include "processes/frontend/frontend_node.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "processes/node/image_codec.h"
+
+namespace airdos {
+namespace {
+
+std::int8_t ToMessage(TrackingState state) {
+  switch (state) {
+    case TrackingState::kInitializing:
+      return static_features_t::STATE_INITIALIZING;
+    case TrackingState::kTracking:
+      return static_features_t::STATE_TRACKING;
+    case TrackingState::kWeak:
+      return static_features_t::STATE_WEAK;
+    case TrackingState::kCoasting:
+      return static_features_t::STATE_COASTING;
+  }
+  return static_features_t::STATE_INVALID;
+}
+
+static_features_t ToMessage(const Header& header, const OdometryFrame& frame) {
+  static_features_t message;
+  message.utime = header.utime;
+  message.seq = header.seq;
+  message.session = header.session;
+  message.tracking_state = ToMessage(frame.state);
+  FromSe3(frame.T_W_C, message.position_W_C, message.orientation_W_C);
+  message.sigma_position_m = frame.prior_sigma_position_m;
+  message.sigma_orientation_rad = frame.prior_sigma_orientation_rad;
+  message.num_detected = frame.num_detected;
+  message.num_masked = frame.num_masked;
+  message.num_matched = frame.num_matched;
+  message.num_features = static_cast<std::int32_t>(frame.sightings.size());
+  for (const LandmarkSighting& sighting : frame.sightings) {
+    message.landmark_id.push_back(sighting.id.value);
+    message.u_left_px.push_back(static_cast<float>(sighting.uvu_px.x()));
+    message.v_px.push_back(static_cast<float>(sighting.uvu_px.y()));
+    message.u_right_px.push_back(static_cast<float>(sighting.uvu_px.z()));
+    message.has_right.push_back(sighting.has_right);
+    message.sigma_px.push_back(static_cast<float>(sighting.sigma_px));
+  }
+  return message;
+}
+
+void AddTo(const map_update_t& part, MapCorrection* correction) {
+  for (const frame_pose_t& frame : part.frames) {
+    correction->frames.emplace_back(FrameId{frame.seq},
+                                    ToSe3(frame.position_W_C, frame.orientation_W_C));
+  }
+  for (std::size_t i = 0; i < part.landmark_id.size(); ++i) {
+    correction->landmarks_W_m.emplace_back(
+        LandmarkId{part.landmark_id[i]},
+        Eigen::Vector3d(part.x_W_m[i], part.y_W_m[i], part.z_W_m[i]));
+  }
+  for (const std::int64_t id : part.removed_landmark_id)
+    correction->removed.push_back(LandmarkId{id});
+}
+
+}  // namespace
+
+FrontendNode::FrontendNode(const FrontendOptions& options)
+    : FrameNode("frontend"), options_(options) {
+  Join<image_t>(channel::kCameraLeft, &FrontendInputs::left);
+  Join<image_t>(channel::kCameraRight, &FrontendInputs::right);
+  if (options_.use_masks) Join<person_mask_t>(channel::kPersonMask, &FrontendInputs::mask);
+  JoinCalibration();
+  if (options_.feedback_lag > 0) {
+    Subscribe<map_update_t>(channel::kMapUpdate, [this](map_update_t&& message) {
+      return ReceiveUpdate(std::move(message));
+    });
+  }
+}
+
+std::string FrontendNode::ReceiveUpdate(map_update_t&& message) {
+  if (!session_ || message.session != *session_) return "of another session";
+  const std::int64_t seq = message.seq;
+  const auto num_parts = static_cast<std::size_t>(message.num_parts);
+  const bool is_expected = std::find(published_.begin(), published_.end(), seq) != published_.end();
+  if (!is_expected) return "too late, or of a frame that was not published";
+  UpdateParts& parts = updates_[seq];
+  const int part = message.part;
+  parts[part] = std::move(message);
+  if (parts.size() >= num_parts) {
+    newest_update_ = std::max(newest_update_, seq);
+    is_feedback_silent_ = false;
+  }
+  return "";
+}
+
+std::optional<std::int64_t> FrontendNode::RequiredUpdate() const {
+  const auto lag = static_cast<std::size_t>(options_.feedback_lag);
+  if (options_.feedback_lag == 0 || published_.size() < lag) return std::nullopt;
+  return published_[published_.size() - lag];
+}
+
+std::vector<std::string> FrontendNode::MissingFeedback(const Header& header) const {
+  if (!session_ || header.session != *session_ || is_feedback_silent_) return {};
+  const std::optional<std::int64_t> required = RequiredUpdate();
+  if (!required || newest_update_ >= *required) return {};
+  return {channel::kMapUpdate};
+}
+
+void FrontendNode::StartSession(const Header& header) {
+  odometry_ = std::make_unique<VisualOdometry>(options_.odometry);
+  first_ = header;
+  session_ = header.session;
+  published_.clear();
+  updates_.clear();
+  newest_update_ = -1;
+  is_feedback_silent_ = false;
+}
+
+void FrontendNode::ApplyUpdates() {
+  const std::optional<std::int64_t> required = RequiredUpdate();
+  if (!required) return;
+  if (newest_update_ < *required) is_feedback_silent_ = true;
+  while (!updates_.empty() && updates_.begin()->first <= *required) {
+    const auto& [seq, parts] = *updates_.begin();
+    MapCorrection correction;
+    correction.newest = FrameId{seq};
+    for (const auto& [number, part] : parts) AddTo(part, &correction);
+    if (static_cast<std::int32_t>(parts.size()) == parts.begin()->second.num_parts)
+      odometry_->Apply(correction);
+    updates_.erase(updates_.begin());
+  }
+}
+
+std::optional<StereoImages> FrontendNode::Images(const Header& header,
+                                                 const FrontendInputs& inputs) {
+  if (!inputs.left || !inputs.right) return std::nullopt;
+  const std::optional<cv::Mat> left = DecodeGray(*inputs.left);
+  const std::optional<cv::Mat> right = DecodeGray(*inputs.right);
+  const cv::Size size(camera().width, camera().height);
+  const auto fits = [&](const std::optional<cv::Mat>& image, const char* channel) {
+    if (image && image->size() == size) return true;
+    ++counters(channel).num_rejected;
+    counters(channel).last_reject =
+        image ? "its size is not that of the calibration" : "the image does not decode";
+    return false;
+  };
+  if (!fits(left, channel::kCameraLeft) || !fits(right, channel::kCameraRight)) return std::nullopt;
+  StereoImages images{FrameId{header.seq},
+                      static_cast<double>(header.utime - first_.utime) * 1e-6,
+                      *left,
+                      *right,
+                      {}};
+  if (!inputs.mask || inputs.mask->encoding == person_mask_t::ENCODING_NONE) return images;
+  const std::optional<cv::Mat> mask = DecodeMask(*inputs.mask);
+  if (!fits(mask, channel::kPersonMask)) return images;
+  const int diameter = 2 * options_.mask_dilation_px + 1;
+  cv::dilate(*mask, images.mask,
+             cv::getStructuringElement(cv::MORPH_ELLIPSE, {diameter, diameter}));
+  return images;
+}
+
+void FrontendNode::ProcessFrame(const Header& header, FrontendInputs inputs) {
+  ApplyUpdates();
+  const std::optional<StereoImages> images = Images(header, inputs);
+  const double time_s = static_cast<double>(header.utime - first_.utime) * 1e-6;
+  const OdometryFrame frame = images ? odometry_->Process(camera(), *images)
+                                     : odometry_->Coast(FrameId{header.seq}, time_s);
+  Publish(channel::kStaticFeatures, ToMessage(header, frame));
+  published_.push_back(header.seq);
+  if (published_.size() > static_cast<std::size_t>(std::max(options_.feedback_lag, 1))) {
+    published_.erase(published_.begin());
+  }
+}
+
+FrontendOptions ReadFrontendOptions(ConfigReader* config) {
+  FrontendOptions options;
+  VisualOdometryOptions& odometry = options.odometry;
+  config->Read("masks.use", &options.use_masks);
+  config->Read("masks.dilation_px", &options.mask_dilation_px, 0, 100);
+  config->Read("feedback.lag_frames", &options.feedback_lag, 0, 20);
+  config->Read("features.num_levels", &odometry.extractor.num_levels, 1, 12);
+  config->Read("features.fast_threshold", &odometry.extractor.fast_threshold, 1, 100);
+  config->Read("features.cell_size_px", &odometry.extractor.cell_size_px, 8, 256);
+  config->Read("features.max_per_cell", &odometry.extractor.max_features_per_cell, 1, 100);
+  config->Read("stereo.min_depth_m", &odometry.stereo.min_depth_m, 0.05, 100);
+  config->Read("stereo.min_disparity_px", &odometry.stereo.min_disparity_px, 0.01, 50);
+  config->Read("stereo.max_row_error_px", &odometry.stereo.max_row_error_px, 0.5, 10);
+  config->Read("stereo.max_hamming_bits", &odometry.stereo.max_hamming, 1, 256);
+  config->Read("stereo.min_correlation", &odometry.stereo.min_correlation, 0, 1);
+  config->Read("map.max_landmarks", &odometry.map.max_landmarks, 100, 100000);
+  config->Read("map.max_frames_unconfirmed", &odometry.map.max_frames_unconfirmed, 1, 1000);
+  config->Read("map.min_found_ratio", &odometry.map.min_found_ratio, 0, 1);
+  config->Read("tracking.wide_radius_px", &odometry.wide_radius_px, 1, 500);
+  config->Read("tracking.wide_max_hamming_bits", &odometry.wide_max_hamming, 1, 256);
+  config->Read("tracking.narrow_max_hamming_bits", &odometry.narrow_max_hamming, 1, 256);
+  config->Read("tracking.min_inliers_tracking", &odometry.min_inliers_tracking, 3, 1000);
+  config->Read("tracking.min_inliers_weak", &odometry.min_inliers_weak, 3, 1000);
+  config->Read("tracking.min_correlation", &odometry.min_correlation, 0, 1);
+  config->Read("tracking.aligned_sigma_px", &odometry.aligned_sigma_px, 0.01, 10);
+  config->Read("tracking.corner_sigma_px", &odometry.corner_sigma_px, 0.01, 10);
+  config->Read("tracking.max_observations", &odometry.max_observations, 3, 5000);
+  config->Read("tracking.observation_cell_px", &odometry.observation_cell_px, 4, 256);
+  config->Read("prior.min_sigma_position_m", &odometry.prior_min_sigma_position_m, 1e-4, 100);
+  config->Read("prior.max_sigma_position_m", &odometry.prior_max_sigma_position_m, 1e-4, 100);
+  config->Read("prior.min_sigma_orientation_rad", &odometry.prior_min_sigma_orientation_rad, 1e-4,
+               3);
+  config->Read("prior.max_sigma_orientation_rad", &odometry.prior_max_sigma_orientation_rad, 1e-4,
+               3);
+  return options;
+}
+
+std::unique_ptr<Node> MakeFrontendNode(ConfigReader* config) {
+  return std::make_unique<FrontendNode>(ReadFrontendOptions(config));
+}
+
+}  // namespace airdos

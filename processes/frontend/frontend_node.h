@@ -1,0 +1,77 @@
+#ifndef AIRDOS_PROCESSES_FRONTEND_FRONTEND_NODE_H_
+#define AIRDOS_PROCESSES_FRONTEND_FRONTEND_NODE_H_
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "airdos/image_t.hpp"
+#include "airdos/map_update_t.hpp"
+#include "airdos/person_mask_t.hpp"
+#include "airdos/static_features_t.hpp"
+#include "common/config/config_reader.h"
+#include "common/features/visual_odometry.h"
+#include "processes/node/frame_node.h"
+
+namespace airdos {
+
+struct FrontendOptions {
+  VisualOdometryOptions odometry;
+  bool use_masks = true;
+  int mask_dilation_px =
+      8;  ///< masks are ragged: a border of so many px around people is left out as well
+  /// MAP_UPDATE of the frame so many frames back must be there before a frame starts; 0 = no
+  /// feedback.
+  int feedback_lag = 2;
+};
+
+FrontendOptions ReadFrontendOptions(ConfigReader* config);
+
+struct FrontendInputs {
+  std::optional<image_t> left;
+  std::optional<image_t> right;
+  std::optional<person_mask_t> mask;
+};
+
+/// Static landmarks and camera pose from stereo images: CAMERA_LEFT, CAMERA_RIGHT, CALIBRATION,
+/// PERSON_MASK (if masks are used) and MAP_UPDATE in, STATIC_FEATURES out. The optimizer's
+/// corrections are applied at a fixed lag of frames, so that the result does not depend on how fast
+/// the optimizer is. A frame without both images coasts.
+class FrontendNode : public FrameNode<FrontendInputs> {
+ public:
+  explicit FrontendNode(const FrontendOptions& options);
+
+ protected:
+  std::vector<std::string> MissingFeedback(const Header& header) const override;
+  void StartSession(const Header& header) override;
+  void ProcessFrame(const Header& header, FrontendInputs inputs) override;
+
+ private:
+  std::string ReceiveUpdate(map_update_t&& message);
+  /// Frame whose update must be there before the next frame starts.
+  std::optional<std::int64_t> RequiredUpdate() const;
+  void ApplyUpdates();
+  std::optional<StereoImages> Images(const Header& header, const FrontendInputs& inputs);
+
+  const FrontendOptions options_;
+  std::unique_ptr<VisualOdometry> odometry_;
+  Header first_;  // of the session
+  std::optional<std::int64_t> session_;
+  std::vector<std::int64_t>
+      published_;  // image numbers of the last feedback_lag frames, oldest first
+  using UpdateParts = std::map<int, map_update_t>;
+  std::map<std::int64_t, UpdateParts> updates_;  // of this session, by seq
+  std::int64_t newest_update_ = -1;              // complete
+  bool is_feedback_silent_ =
+      false;  // a frame had to start without: do not wait again until an update comes
+};
+
+std::unique_ptr<Node> MakeFrontendNode(ConfigReader* config);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_FRONTEND_FRONTEND_NODE_H_

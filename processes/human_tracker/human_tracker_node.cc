@@ -1,0 +1,120 @@
+#include "processes/human_tracker/human_tracker_node.h"
+
+#include <cstddef>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+#include <vector>
+
+#include "common/human/layouts.h"
+#include "processes/node/channels.h"
+#include "processes/node/image_codec.h"
+
+namespace airdos {
+namespace {
+
+std::optional<KeypointLayout> ToLayout(int layout) {
+  switch (layout) {
+    case person_keypoints_t::LAYOUT_COCO18:
+      return KeypointLayout::kCoco18;
+    case person_keypoints_t::LAYOUT_COCO17:
+      return KeypointLayout::kCoco17;
+    case person_keypoints_t::LAYOUT_HALPE26:
+      return KeypointLayout::kHalpe26;
+    default:
+      return std::nullopt;
+  }
+}
+
+// The message has passed Validate(): the arrays are as long as its counts say.
+std::vector<BodyKeypoints> ToPeople(const std::optional<person_keypoints_t>& message) {
+  std::vector<BodyKeypoints> people;
+  if (!message) return people;
+  const std::optional<KeypointLayout> layout = ToLayout(message->layout);
+  if (!layout) return people;
+  for (std::size_t person = 0; person < message->u_px.size(); ++person) {
+    std::vector<BodyKeypoint> keypoints;
+    for (std::size_t joint = 0; joint < message->u_px[person].size(); ++joint) {
+      keypoints.push_back({message->u_px[person][joint], message->v_px[person][joint],
+                           message->confidence[person][joint]});
+    }
+    const std::optional<BodyKeypoints> body = MapToBody(*layout, keypoints);
+    if (body) people.push_back(*body);
+  }
+  return people;
+}
+
+human_observation_t ToMessage(const TrackedHuman& human) {
+  human_observation_t message{};
+  message.track_id = human.id.value;
+  for (std::size_t joint = 0; joint < human.joints.size(); ++joint) {
+    const std::optional<JointObservation>& seen = human.joints[joint];
+    if (!seen) continue;
+    const auto as_float = [](double value) { return static_cast<float>(value); };
+    message.joint_id.push_back(static_cast<int8_t>(joint));
+    message.u_left_px.push_back(as_float(seen->u_left_px));
+    message.v_left_px.push_back(as_float(seen->v_px));
+    message.u_right_px.push_back(as_float(seen->u_right_px));
+    message.v_right_px.push_back(as_float(seen->v_px));
+    message.sigma_px.push_back(as_float(seen->sigma_px));
+    message.x_C_m.push_back(as_float(seen->p_C.x()));
+    message.y_C_m.push_back(as_float(seen->p_C.y()));
+    message.z_C_m.push_back(as_float(seen->p_C.z()));
+    const Eigen::Matrix3d& c = seen->covariance_C;
+    message.covariance_C.emplace_back();
+    for (int row = 0; row < 3; ++row) {
+      for (int column = row; column < 3; ++column) {
+        message.covariance_C.back().push_back(as_float(c(row, column)));
+      }
+    }
+  }
+  message.num_joints = static_cast<int32_t>(message.joint_id.size());
+  return message;
+}
+
+}  // namespace
+
+HumanTrackerNode::HumanTrackerNode(const HumanTrackerOptions& options)
+    : FrameNode("human_tracker"),
+      options_(options),
+      tracker_(std::make_unique<HumanTracker>(options)) {
+  Join(channel::kCameraLeft, &HumanTrackerInputs::left_image);
+  Join(channel::kCameraRight, &HumanTrackerInputs::right_image);
+  Join(channel::kPersonKeypointsLeft, &HumanTrackerInputs::left_keypoints);
+  Join(channel::kPersonKeypointsRight, &HumanTrackerInputs::right_keypoints);
+  JoinCalibration();
+}
+
+void HumanTrackerNode::StartSession(const Header&) {
+  tracker_ = std::make_unique<HumanTracker>(options_);
+}
+
+void HumanTrackerNode::ProcessFrame(const Header& header, HumanTrackerInputs inputs) {
+  PeopleFrame frame;
+  if (inputs.left_image) {
+    const std::optional<cv::Mat> color = DecodeColor(*inputs.left_image);
+    if (color) {
+      frame.left_color = *color;
+      cv::cvtColor(*color, frame.left_gray, cv::COLOR_BGR2GRAY);
+    }
+  }
+  if (inputs.right_image) {
+    frame.right_gray = DecodeGray(*inputs.right_image).value_or(cv::Mat());
+  }
+  frame.left = ToPeople(inputs.left_keypoints);
+  frame.right = ToPeople(inputs.right_keypoints);
+
+  const TrackedFrame tracked = tracker_->Process(camera(), frame);
+
+  human_observations_t message{};
+  message.utime = header.utime;
+  message.seq = header.seq;
+  message.session = header.session;
+  message.num_detected_left = static_cast<int32_t>(frame.left.size());
+  message.num_detected_right = static_cast<int32_t>(frame.right.size());
+  message.num_rejected = static_cast<int32_t>(tracked.num_rejected);
+  for (const TrackedHuman& human : tracked.humans) message.humans.push_back(ToMessage(human));
+  message.num_humans = static_cast<int32_t>(message.humans.size());
+  Publish(channel::kHumanObservations, message);
+}
+
+}  // namespace airdos

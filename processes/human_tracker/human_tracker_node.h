@@ -1,0 +1,45 @@
+#ifndef AIRDOS_PROCESSES_HUMAN_TRACKER_HUMAN_TRACKER_NODE_H_
+#define AIRDOS_PROCESSES_HUMAN_TRACKER_HUMAN_TRACKER_NODE_H_
+
+#include <memory>
+#include <optional>
+
+#include "airdos/human_observations_t.hpp"
+#include "airdos/image_t.hpp"
+#include "airdos/person_keypoints_t.hpp"
+#include "common/config/config_reader.h"
+#include "common/human/human_tracker.h"
+#include "processes/node/frame_node.h"
+
+namespace airdos {
+
+struct HumanTrackerInputs {
+  std::optional<image_t> left_image;
+  std::optional<image_t> right_image;
+  std::optional<person_keypoints_t> left_keypoints;
+  std::optional<person_keypoints_t> right_keypoints;
+};
+
+/// CAMERA_LEFT, CAMERA_RIGHT, PERSON_KEYPOINTS_LEFT, PERSON_KEYPOINTS_RIGHT -> HUMAN_OBSERVATIONS:
+/// one message a frame, empty if nobody was found. An image that is missing or does not decode is
+/// done without; so are keypoints.
+class HumanTrackerNode : public FrameNode<HumanTrackerInputs> {
+ public:
+  explicit HumanTrackerNode(const HumanTrackerOptions& options);
+
+ protected:
+  void StartSession(const Header& header) override;
+  void ProcessFrame(const Header& header, HumanTrackerInputs inputs) override;
+
+ private:
+  HumanTrackerOptions options_;
+  std::unique_ptr<HumanTracker> tracker_;
+};
+
+/// Reads the options of launch_scripts/config/human_tracker.yaml; Finish() is left to the caller.
+HumanTrackerOptions ReadHumanTrackerOptions(ConfigReader* config);
+std::unique_ptr<Node> MakeHumanTrackerNode(ConfigReader* config);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_HUMAN_TRACKER_HUMAN_TRACKER_NODE_H_

@@ -1,0 +1,205 @@
+#include "processes/optimizer/optimizer_messages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/human/skeleton.h"
+#include "processes/node/conversions.h"
+
+namespace airdos {
+namespace {
+
+constexpr double kMicro = 1e-6;
+constexpr int kMaxPartBytes = 110000;
+
+std::int64_t ToUtime(double time_s) {
+  return static_cast<std::int64_t>(std::llround(time_s / kMicro));
+}
+
+bool IsUsable(const Eigen::Vector3d& uvu_px, bool has_right, double sigma_px) {
+  const bool is_finite = has_right ? uvu_px.allFinite() : uvu_px.head<2>().allFinite();
+  return is_finite && std::isfinite(sigma_px) && sigma_px > 0;
+}
+
+void AddFeatures(const static_features_t& message, FrameInput* input) {
+  const Se3 T_W_C = ToSe3(message.position_W_C, message.orientation_W_C);
+  if (T_W_C.translation.allFinite() && T_W_C.rotation.coeffs().allFinite()) {
+    input->T_W_C_odometry = T_W_C;
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(message.num_features); ++i) {
+    StaticObservation feature;
+    feature.id.value = message.landmark_id[i];
+    feature.has_right = message.has_right[i] != 0;
+    feature.uvu_px = {message.u_left_px[i], message.v_px[i],
+                      feature.has_right ? message.u_right_px[i] : 0.0F};
+    feature.sigma_px = message.sigma_px[i];
+    if (IsUsable(feature.uvu_px, feature.has_right, feature.sigma_px)) {
+      input->features.push_back(feature);
+    }
+  }
+}
+
+void AddHuman(const human_observation_t& message, FrameInput* input) {
+  HumanObservation human;
+  human.id.value = message.track_id;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(message.num_joints); ++i) {
+    JointObservation joint;
+    joint.joint = message.joint_id[i];
+    // One row for both images: the cameras are rectified.
+    joint.uvu_px = {message.u_left_px[i], 0.5F * (message.v_left_px[i] + message.v_right_px[i]),
+                    message.u_right_px[i]};
+    joint.sigma_px = message.sigma_px[i];
+    const bool is_body = joint.joint >= 0 && joint.joint < kNumJoints;
+    if (is_body && IsUsable(joint.uvu_px, true, joint.sigma_px)) human.joints.push_back(joint);
+  }
+  const auto by_joint = [](const JointObservation& a, const JointObservation& b) {
+    return a.joint < b.joint;
+  };
+  std::stable_sort(human.joints.begin(), human.joints.end(), by_joint);
+  const auto same_joint = [](const JointObservation& a, const JointObservation& b) {
+    return a.joint == b.joint;
+  };
+  human.joints.erase(std::unique(human.joints.begin(), human.joints.end(), same_joint),
+                     human.joints.end());
+  if (!human.joints.empty()) input->humans.push_back(human);
+}
+
+std::int8_t ToStatus(FrameEstimate::Status status) {
+  switch (status) {
+    case FrameEstimate::Status::kFirstFrame:
+      return state_estimate_t::STATUS_FIRST_FRAME;
+    case FrameEstimate::Status::kConverged:
+      return state_estimate_t::STATUS_CONVERGED;
+    case FrameEstimate::Status::kNotConverged:
+      return state_estimate_t::STATUS_NOT_CONVERGED;
+    case FrameEstimate::Status::kPredicted:
+      return state_estimate_t::STATUS_PREDICTED;
+  }
+  return state_estimate_t::STATUS_INVALID;
+}
+
+/// Fills messages one after the other, each up to the size that may travel.
+class PartWriter {
+ public:
+  explicit PartWriter(const Header& header) : header_(header) { StartPart(); }
+
+  void Add(const MapChanges::FramePose& frame) {
+    frame_pose_t pose{};
+    pose.seq = frame.id.value;
+    pose.utime = ToUtime(frame.time_s);
+    FromSe3(frame.T_W_C, pose.position_W_C, pose.orientation_W_C);
+    map_update_t& part = PartWithRoom(72);
+    part.frames.push_back(pose);
+    ++part.num_frames;
+  }
+  void Add(const MapChanges::Landmark& landmark) {
+    map_update_t& part = PartWithRoom(40);
+    part.landmark_id.push_back(landmark.id.value);
+    part.x_W_m.push_back(landmark.p_W.x());
+    part.y_W_m.push_back(landmark.p_W.y());
+    part.z_W_m.push_back(landmark.p_W.z());
+    part.sigma_m.push_back(static_cast<float>(landmark.sigma_m));
+    part.num_observations.push_back(landmark.num_observations);
+    ++part.num_landmarks;
+  }
+  void Add(LandmarkId removed) {
+    map_update_t& part = PartWithRoom(8);
+    part.removed_landmark_id.push_back(removed.value);
+    ++part.num_removed;
+  }
+  void Add(const human_state_t& human) {
+    map_update_t& part = PartWithRoom(human.getEncodedSize());
+    part.humans.push_back(human);
+    ++part.num_humans;
+  }
+
+  std::vector<map_update_t> Finish() {
+    for (map_update_t& part : parts_) part.num_parts = static_cast<std::int32_t>(parts_.size());
+    return std::move(parts_);
+  }
+
+ private:
+  void StartPart() {
+    map_update_t part{};
+    part.utime = header_.utime;
+    part.seq = header_.seq;
+    part.session = header_.session;
+    part.part = static_cast<std::int32_t>(parts_.size());
+    parts_.push_back(part);
+    num_bytes_ = 0;
+  }
+  map_update_t& PartWithRoom(int num_bytes) {
+    if (num_bytes_ + num_bytes > kMaxPartBytes) StartPart();
+    num_bytes_ += num_bytes;
+    return parts_.back();
+  }
+
+  Header header_;
+  std::vector<map_update_t> parts_;
+  int num_bytes_ = 0;
+};
+
+}  // namespace
+
+FrameInput ToFrameInput(const Header& header, const static_features_t* features,
+                        const human_observations_t* humans) {
+  FrameInput input;
+  input.id.value = header.seq;
+  input.time_s = static_cast<double>(header.utime) * kMicro;
+  if (features != nullptr) AddFeatures(*features, &input);
+  if (humans != nullptr) {
+    for (const human_observation_t& human : humans->humans) AddHuman(human, &input);
+    const auto by_id = [](const HumanObservation& a, const HumanObservation& b) {
+      return a.id < b.id;
+    };
+    std::stable_sort(input.humans.begin(), input.humans.end(), by_id);
+    const auto same_id = [](const HumanObservation& a, const HumanObservation& b) {
+      return a.id == b.id;
+    };
+    input.humans.erase(std::unique(input.humans.begin(), input.humans.end(), same_id),
+                       input.humans.end());
+  }
+  return input;
+}
+
+state_estimate_t ToStateEstimate(const Header& header, const FrameEstimate& estimate) {
+  state_estimate_t message{};
+  message.utime = header.utime;
+  message.seq = header.seq;
+  message.session = header.session;
+  message.status = ToStatus(estimate.status);
+  FromSe3(estimate.T_W_C, message.position_W_C, message.orientation_W_C);
+  for (int i = 0; i < 36; ++i) message.covariance[i] = estimate.covariance(i / 6, i % 6);
+  message.trusted = estimate.trusts_people ? state_estimate_t::TRUSTED_WITH_PEOPLE
+                                           : state_estimate_t::TRUSTED_WITHOUT_PEOPLE;
+  FromSe3(estimate.T_W_C_without_people, message.position_without_people_W_C,
+          message.orientation_without_people_W_C);
+  FromSe3(estimate.T_W_C_with_people, message.position_with_people_W_C,
+          message.orientation_with_people_W_C);
+  message.num_window_frames = estimate.num_window_frames;
+  message.num_static_landmarks = estimate.num_static_landmarks;
+  message.num_static_observations = estimate.num_static_observations;
+  const BundleSummary& summary = estimate.summary;
+  message.num_people = summary.num_people;
+  message.num_rigidity_factors = summary.num_rigidity;
+  message.num_motion_factors = summary.num_motion;
+  message.num_rigidity_eliminated = summary.num_rigidity_eliminated;
+  message.num_motion_eliminated = summary.num_motion_eliminated;
+  message.num_reprojection_eliminated = summary.num_reprojection_eliminated;
+  message.num_iterations = summary.num_iterations;
+  message.initial_cost = summary.initial_cost;
+  message.final_cost = summary.final_cost;
+  return message;
+}
+
+std::vector<map_update_t> ToMapUpdates(const Header& header, const MapChanges& changes) {
+  PartWriter writer(header);
+  for (const MapChanges::FramePose& frame : changes.frames) writer.Add(frame);
+  for (const MapChanges::Landmark& landmark : changes.landmarks) writer.Add(landmark);
+  for (const LandmarkId id : changes.removed) writer.Add(id);
+  return writer.Finish();
+}
+
+}  // namespace airdos

@@ -1,0 +1,29 @@
+#ifndef AIRDOS_PROCESSES_OPTIMIZER_OPTIMIZER_MESSAGES_H_
+#define AIRDOS_PROCESSES_OPTIMIZER_OPTIMIZER_MESSAGES_H_
+
+#include <vector>
+
+#include "airdos/human_observations_t.hpp"
+#include "airdos/map_update_t.hpp"
+#include "airdos/state_estimate_t.hpp"
+#include "airdos/static_features_t.hpp"
+#include "common/optimization/sliding_window.h"
+#include "processes/node/frame_joiner.h"
+
+namespace airdos {
+
+// Between the optimizer's messages and the types of common/optimization.
+
+/// Either message may be null: it never came. Observations that are not finite are left out, and so
+/// are joints beyond the body model.
+FrameInput ToFrameInput(const Header& header, const static_features_t* features,
+                        const human_observations_t* humans);
+
+state_estimate_t ToStateEstimate(const Header& header, const FrameEstimate& estimate);
+
+/// At least one part; each encodes to less than 120 kB (README of lcmtypes: why).
+std::vector<map_update_t> ToMapUpdates(const Header& header, const MapChanges& changes);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_OPTIMIZER_OPTIMIZER_MESSAGES_H_

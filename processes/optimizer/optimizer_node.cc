@@ -1,0 +1,35 @@
+#include "processes/optimizer/optimizer_node.h"
+
+#include "processes/optimizer/optimizer_messages.h"
+
+namespace airdos {
+
+OptimizerNode::OptimizerNode(const OptimizerOptions& options)
+    : FrameNode("optimizer"), options_(options) {
+  Join(channel::kStaticFeatures, &OptimizerInputs::features);
+  if (options_.people == PeopleMode::kOn) {
+    Join(channel::kHumanObservations, &OptimizerInputs::humans);
+  }
+  JoinCalibration();
+}
+
+void OptimizerNode::StartSession(const Header&) { window_.reset(); }
+
+void OptimizerNode::ProcessFrame(const Header& header, OptimizerInputs inputs) {
+  if (window_ == nullptr) {
+    window_ = std::make_unique<SlidingWindowOptimizer>(options_.window, camera());
+  }
+  const FrameInput input = ToFrameInput(header, inputs.features ? &*inputs.features : nullptr,
+                                        inputs.humans ? &*inputs.humans : nullptr);
+  const FrameResult result = window_->Process(input);
+  Publish(channel::kStateEstimate, ToStateEstimate(header, result.estimate));
+  for (const map_update_t& part : ToMapUpdates(header, result.changes)) {
+    Publish(channel::kMapUpdate, part);
+  }
+}
+
+std::unique_ptr<Node> MakeOptimizerNode(ConfigReader* config) {
+  return std::make_unique<OptimizerNode>(ReadOptimizerOptions(config));
+}
+
+}  // namespace airdos

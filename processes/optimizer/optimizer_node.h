@@ -1,0 +1,39 @@
+#ifndef AIRDOS_PROCESSES_OPTIMIZER_OPTIMIZER_NODE_H_
+#define AIRDOS_PROCESSES_OPTIMIZER_OPTIMIZER_NODE_H_
+
+#include <memory>
+#include <optional>
+
+#include "airdos/human_observations_t.hpp"
+#include "airdos/static_features_t.hpp"
+#include "common/config/config_reader.h"
+#include "common/optimization/sliding_window.h"
+#include "processes/node/frame_node.h"
+#include "processes/optimizer/optimizer_options.h"
+
+namespace airdos {
+
+struct OptimizerInputs {
+  std::optional<static_features_t> features;
+  std::optional<human_observations_t> humans;  ///< only where people are on
+};
+
+/// STATIC_FEATURES and, with `people: on`, HUMAN_OBSERVATIONS in; STATE_ESTIMATE and MAP_UPDATE
+/// (one or more parts) out, for each frame once. A frame whose inputs never came is predicted.
+class OptimizerNode final : public FrameNode<OptimizerInputs> {
+ public:
+  explicit OptimizerNode(const OptimizerOptions& options);
+
+ private:
+  void StartSession(const Header& header) override;
+  void ProcessFrame(const Header& header, OptimizerInputs inputs) override;
+
+  OptimizerOptions options_;
+  std::unique_ptr<SlidingWindowOptimizer> window_;  // of the session; null before its first frame
+};
+
+std::unique_ptr<Node> MakeOptimizerNode(ConfigReader* config);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_OPTIMIZER_OPTIMIZER_NODE_H_

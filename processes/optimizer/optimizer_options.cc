@@ -1,0 +1,55 @@
+#include "processes/optimizer/optimizer_options.h"
+
+namespace airdos {
+namespace {
+
+constexpr double kMinSigma = 1e-6;
+
+void ReadMap(ConfigReader* config, WindowMapOptions* map) {
+  config->Read("window.frames", &map->window_frames, 2, 100);
+  config->Read("window.max_fixed_key_frames", &map->max_fixed_key_frames, 0, 100);
+  config->Read("window.min_shared_landmarks", &map->min_shared_landmarks, 1, 10000);
+  config->Read("window.key_frame_max_shared", &map->key_frame_max_shared, 0, 1);
+  config->Read("window.key_frame_interval", &map->key_frame_interval, 1, 1000);
+  config->Read("window.max_key_frames", &map->max_key_frames, 1, 10000);
+  config->Read("window.forget_after_frames", &map->forget_after_frames, 1, 1000000);
+  config->Read("window.min_disparity_px", &map->min_disparity_px, 0.01, 100);
+  config->Read("window.max_eliminations", &map->max_eliminations, 1, 100);
+}
+
+void ReadSolver(ConfigReader* config, BundleOptions* bundle) {
+  config->Read("solver.max_iterations", &bundle->max_iterations, 1, 1000);
+  config->Read("solver.max_iterations_after_elimination", &bundle->max_iterations_after_elimination,
+               0, 1000);
+  config->Read("solver.function_tolerance", &bundle->function_tolerance, 0, 1);
+  config->Read("solver.huber_static", &bundle->huber_static, kMinSigma, 1e6);
+  config->Read("solver.eliminate_static", &bundle->eliminate_static, kMinSigma, 1e9);
+}
+
+void ReadCameraMotion(ConfigReader* config, CameraMotionOptions* motion) {
+  config->Read("camera_motion.use_acceleration", &motion->use_acceleration);
+  config->Read("camera_motion.sigma_factor", &motion->sigma_factor, 0, 1000);
+  config->Read("camera_motion.linear_floor_m_s2", &motion->floor.linear_m_s2, kMinSigma, 1e6);
+  config->Read("camera_motion.linear_ceiling_m_s2", &motion->ceiling.linear_m_s2, kMinSigma, 1e6);
+  config->Read("camera_motion.angular_floor_rad_s2", &motion->floor.angular_rad_s2, kMinSigma, 1e6);
+  config->Read("camera_motion.angular_ceiling_rad_s2", &motion->ceiling.angular_rad_s2, kMinSigma,
+               1e6);
+  config->Read("camera_motion.min_frames", &motion->min_frames, 3, 1000);
+  config->Read("camera_motion.history_frames", &motion->history_frames, 3, 10000);
+}
+
+}  // namespace
+
+OptimizerOptions ReadOptimizerOptions(ConfigReader* config) {
+  OptimizerOptions options;
+  options.people =
+      static_cast<PeopleMode>(config->ReadChoice("people.mode", {"off", "mask_only", "on"}));
+  ReadMap(config, &options.window.map);
+  ReadSolver(config, &options.window.bundle);
+  ReadCameraMotion(config, &options.window.camera_motion);
+  config->Read("output.publish_moved_m", &options.window.publish_moved_m, 0, 1);
+  options.window.bundle.use_people = options.people == PeopleMode::kOn;
+  return options;
+}
+
+}  // namespace airdos

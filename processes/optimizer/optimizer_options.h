@@ -1,0 +1,26 @@
+#ifndef AIRDOS_PROCESSES_OPTIMIZER_OPTIMIZER_OPTIONS_H_
+#define AIRDOS_PROCESSES_OPTIMIZER_OPTIMIZER_OPTIONS_H_
+
+#include "common/config/config_reader.h"
+#include "common/optimization/sliding_window.h"
+
+namespace airdos {
+
+enum class PeopleMode {
+  kOff,       ///< people are not looked at
+  kMaskOnly,  ///< they only mask static features (the front end does); the same here as kOff
+  kOn,        ///< their joints are unknowns of the adjustment
+};
+
+/// launch_scripts/config/optimizer.yaml
+struct OptimizerOptions {
+  PeopleMode people = PeopleMode::kOn;
+  SlidingWindowOptions window;
+};
+
+/// Throws InputError naming key and value. Leaves Finish() to the caller.
+OptimizerOptions ReadOptimizerOptions(ConfigReader* config);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_OPTIMIZER_OPTIMIZER_OPTIONS_H_

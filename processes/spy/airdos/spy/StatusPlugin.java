@@ -1,0 +1,113 @@
+package airdos.spy;
+
+import airdos.process_status_t;
+import java.awt.BorderLayout;
+import java.awt.Color;
+import java.awt.Component;
+import java.awt.Dimension;
+import java.awt.event.ActionEvent;
+import java.io.IOException;
+import javax.swing.AbstractAction;
+import javax.swing.Action;
+import javax.swing.JDesktopPane;
+import javax.swing.JInternalFrame;
+import javax.swing.JPanel;
+import javax.swing.JScrollPane;
+import javax.swing.JTable;
+import javax.swing.SwingUtilities;
+import javax.swing.Timer;
+import javax.swing.table.DefaultTableCellRenderer;
+import javax.swing.table.TableColumnModel;
+import lcm.lcm.LCM;
+import lcm.lcm.LCMSubscriber;
+import lcm.spy.ChannelData;
+import lcm.spy.SpyPlugin;
+
+/** Opens for STATUS: one row for each process, red where it is not READY or has fallen silent. */
+public final class StatusPlugin implements SpyPlugin {
+  static final String NAME = "Processes";
+  private static final String CHANNEL = "STATUS";
+  private static final int REFRESH_MS = 500;
+  private static final Dimension SIZE = new Dimension(1180, 260);
+  private static final int[] COLUMN_WIDTHS = {110, 80, 55, 80, 60, 60, 65, 60, 60, 95, 85, 200, 150};
+
+  public StatusPlugin() {}
+
+  @Override
+  public boolean canHandle(long fingerprint) {
+    return fingerprint == process_status_t.LCM_FINGERPRINT;
+  }
+
+  /** Called with nulls first, for the name only. */
+  @Override
+  public Action getAction(JDesktopPane desktop, ChannelData channel) {
+    return new AbstractAction(NAME) {
+      @Override
+      public void actionPerformed(ActionEvent event) {
+        if (desktop != null) open(desktop, channel);
+      }
+    };
+  }
+
+  private static void open(JDesktopPane desktop, ChannelData channel) {
+    StatusTableModel model = new StatusTableModel();
+    LCM lcm = LCM.getSingleton();
+    String name = channel == null ? CHANNEL : channel.name;
+    LCMSubscriber subscriber =
+        (source, heardOn, stream) -> {
+          try {
+            process_status_t status = new process_status_t(stream);
+            SwingUtilities.invokeLater(() -> model.add(status, nowMs()));
+          } catch (IOException | RuntimeException e) {
+            // The spy's own column counts what does not decode.
+          }
+        };
+    lcm.subscribe(name, subscriber);
+
+    JPanel panel = new JPanel(new BorderLayout());
+    panel.add(new JScrollPane(newTable(model)));
+    JInternalFrame window = CameraPlugin.newWindow(NAME, panel, desktop, SIZE);
+    Timer timer = new Timer(REFRESH_MS, event -> model.refresh(nowMs()));
+    Runnable stop =
+        () -> {
+          timer.stop();
+          lcm.unsubscribe(name, subscriber);
+        };
+    CameraPlugin.onClose(window, desktop, stop);
+    timer.start();
+  }
+
+  /** For ages only, so not the wall clock, which may be set back. */
+  private static long nowMs() {
+    return System.nanoTime() / 1_000_000;
+  }
+
+  static JTable newTable(StatusTableModel model) {
+    JTable table = new JTable(model);
+    table.setAutoResizeMode(JTable.AUTO_RESIZE_LAST_COLUMN);
+    TableColumnModel columns = table.getColumnModel();
+    for (int i = 0; i < COLUMN_WIDTHS.length; ++i) {
+      columns.getColumn(i).setPreferredWidth(COLUMN_WIDTHS[i]);
+    }
+    table.setDefaultRenderer(Object.class, new HealthRenderer(model));
+    return table;
+  }
+
+  private static final class HealthRenderer extends DefaultTableCellRenderer {
+    private static final Color ALARM = new Color(0xFF, 0xCC, 0xCC);
+    private final transient StatusTableModel model;
+
+    HealthRenderer(StatusTableModel model) {
+      this.model = model;
+    }
+
+    @Override
+    public Component getTableCellRendererComponent(
+        JTable table, Object value, boolean isSelected, boolean hasFocus, int row, int column) {
+      Component cell =
+          super.getTableCellRendererComponent(table, value, isSelected, hasFocus, row, column);
+      if (!isSelected) cell.setBackground(model.isHealthy(row) ? Color.WHITE : ALARM);
+      return cell;
+    }
+  }
+}

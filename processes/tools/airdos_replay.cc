@@ -1,0 +1,59 @@
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <opencv2/core/utility.hpp>
+#include <string>
+
+#include "processes/node/process_cli.h"
+#include "processes/tools/replay.h"
+#include "processes/tools/replay_setup.h"
+
+int main(int argc, char** argv) {
+  CLI::App app("Runs all processes in one, as fast as the machine allows, on a log or data set.");
+  airdos::ReplaySetup setup;
+  airdos::ReplayOptions options;
+  std::string input;
+  std::string timing_path;
+  std::int64_t first = std::numeric_limits<std::int64_t>::min();
+  std::int64_t last = std::numeric_limits<std::int64_t>::max();
+  bool no_progress = false;
+  bool digest = false;
+  bool digest_only = false;
+  setup.config_dir = airdos::ConfigFolder();
+  app.add_option("input", input, "LCM log, or folder of a data set")->required();
+  app.add_option("--out", options.out_path, "log of what the processes publish");
+  app.add_flag("--all", options.writes_inputs, "have the inputs in that log as well");
+  app.add_option("--run-dir", setup.run_dir, "folder for map, trajectories, configurations");
+  app.add_option("--config-dir", setup.config_dir, "folder with <process>.yaml")
+      ->capture_default_str();
+  app.add_option("--set", setup.overrides, "process:section.key=value (again for more)")
+      ->allow_extra_args(false);
+  app.add_option("--people", setup.people, "what people are used for")
+      ->check(CLI::IsMember({"off", "mask_only", "on"}));
+  app.add_option("--masks", setup.masks, "whether pixels on people are left out")
+      ->check(CLI::IsMember({"off", "on"}));
+  app.add_option("--first", first, "first image number");
+  app.add_option("--last", last, "last image number");
+  app.add_option("--timing", timing_path, "JSON file for ms per frame of each process");
+  app.add_flag("--no-progress", no_progress, "do not say how far it is");
+  app.add_flag("--digest", digest, "print the digests of the output channels only");
+  app.add_flag("--digest-only", digest_only, "print them of the log as it is; run nothing");
+
+  return airdos::RunProgram(argc, argv, &app, [&] {
+    if (digest_only) {
+      std::cout << airdos::FormatDigests(airdos::DigestLog(input));
+      return 0;
+    }
+    cv::setNumThreads(1);
+    const auto source = airdos::OpenFrameSource(input, first, last);
+    const auto nodes = airdos::MakeReplayNodes(setup);
+    airdos::ProgressBar bar;
+    if (!no_progress) options.on_progress = [&bar](double fraction) { bar.Show(fraction); };
+    const airdos::ReplayResult result = airdos::Replay(source.get(), nodes, options);
+    if (!timing_path.empty()) airdos::WriteTiming(result, timing_path);
+    std::cout << (digest ? airdos::FormatDigests(result.digests) : airdos::FormatSummary(result));
+    return 0;
+  });
+}

@@ -1,0 +1,5 @@
+# The launch scripts, and the direction of includes.
+add_test(NAME scripts_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts_test.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(scripts_test PROPERTIES LABELS system TIMEOUT 180 SKIP_RETURN_CODE 77)
+add_test(NAME includes_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/includes_test.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(includes_test PROPERTIES LABELS unit TIMEOUT 60)
