@@ -309,7 +309,7 @@ TEST_F(PlayerProcessTest, BadInputIsOneLineAndExit2) {
   ExpectOneLine("airdos-stereo-player", {"--bogus"}, "--bogus");
   ExpectOneLine("airdos-stereo-player", {}, "--data");
   ExpectOneLine("airdos-stereo-player", {"--data", "/nowhere"}, "/nowhere");
-  ExpectOneLine("airdos-stereo-player", {"--data", data, "--first", "7"}, "3 frames");
+  ExpectOneLine("airdos-stereo-player", {"--data", data, "--first", "7"}, "frames 0 to 2");
   ExpectOneLine("airdos-stereo-player", {"--data", data, "--set", "image.size=3"}, "image.size");
 }
 
