@@ -50,8 +50,14 @@ void DrawVerticalText(cv::Mat* picture, const std::string& text, cv::Point cente
 
 std::string TickText(double value, double step) {
   const int digits = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
+  constexpr int kMostDigits = 5;
+  const double shown = std::abs(value) < 1e-9 * step ? 0.0 : value;
   char text[32];
-  std::snprintf(text, sizeof text, "%.*f", digits, std::abs(value) < 1e-9 * step ? 0.0 : value);
+  if (digits > kMostDigits) {
+    std::snprintf(text, sizeof text, "%.3g", shown);
+  } else {
+    std::snprintf(text, sizeof text, "%.*f", digits, shown);
+  }
   return text;
 }
 
@@ -85,7 +91,10 @@ Frame MakeFrame(const Chart& chart, const cv::Rect& area_px) {
                 area_px.height - kTopMargin - kBottomMargin};
   frame.x = RangeOf(chart, &cv::Point2d::x);
   frame.y = RangeOf(chart, &cv::Point2d::y);
-  if (chart.y_starts_at_zero) frame.y.low = std::min(0.0, frame.y.low);
+  if (chart.starts_at_zero) {
+    frame.x.low = std::min(0.0, frame.x.low);
+    frame.y.low = std::min(0.0, frame.y.low);
+  }
   if (chart.equal_scale) {
     frame.x.Pad(0.06 * frame.x.span());
     frame.y.Pad(0.06 * frame.y.span());

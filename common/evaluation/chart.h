@@ -22,7 +22,7 @@ struct Chart {
   std::string x_label;
   std::string y_label;
   bool equal_scale = false;  ///< one unit of x as long as one of y
-  bool y_starts_at_zero = false;
+  bool starts_at_zero = false;
   std::vector<ChartSeries> series;
 };
 

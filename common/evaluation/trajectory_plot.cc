@@ -47,7 +47,7 @@ Chart ChartOverTime(const TrajectoryReport& report, const std::string& title,
   chart.title = title;
   chart.x_label = report.has_times ? "time since the first pose (s)" : "row";
   chart.y_label = y_label;
-  chart.y_starts_at_zero = true;
+  chart.starts_at_zero = true;
   ChartSeries series = {"", kErrorColor, 1, {}};
   const std::vector<TrajectoryPose>& truth = report.aligned.ground_truth;
   const std::size_t offset = truth.size() - values.size();  // a motion is shown at its end
