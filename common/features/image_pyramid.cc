@@ -1,6 +1,5 @@
 #include "common/features/image_pyramid.h"
 
-#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "common/util/check.h"
@@ -11,11 +10,16 @@ ImagePyramid::ImagePyramid(const cv::Mat& image, int num_levels) {
   AIRDOS_CHECK(image.type() == CV_8UC1);
   constexpr int kMinSize_px = 64;
   double scale = 1.0;
+  cv::Mat level = image;
   for (int index = 0; index < num_levels; ++index) {
-    const cv::Size size(cvRound(image.cols / scale), cvRound(image.rows / scale));
-    if (index > 0 && (size.width < kMinSize_px || size.height < kMinSize_px)) break;
-    cv::Mat level = image;
-    if (index > 0) cv::resize(levels_.back(), level, size, 0, 0, cv::INTER_LINEAR);
+    if (index > 0) {
+      // By factor, not by size: sizes are whole, so a size would stretch the level a little, up to
+      // 0.4 px at its far border, and ToLevel() would not know.
+      cv::Mat smaller;
+      cv::resize(level, smaller, {}, 1 / kScaleFactor, 1 / kScaleFactor, cv::INTER_LINEAR);
+      if (smaller.cols < kMinSize_px || smaller.rows < kMinSize_px) break;
+      level = smaller;
+    }
     levels_.push_back(level);
     scales_.push_back(scale);
     scale *= kScaleFactor;

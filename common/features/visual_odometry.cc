@@ -323,8 +323,8 @@ std::vector<LandmarkSighting> VisualOdometry::KeepSpread(
 
 void VisualOdometry::UpdateLandmarks(const View& view, const Se3& T_W_C,
                                      const std::vector<LandmarkSighting>& sightings) {
-  constexpr double kMinDepthRatio = 0.7;
-  constexpr double kMaxDepthRatio = 1.45;
+  constexpr double kMinDepthRatio = 0.85;
+  constexpr double kMaxDepthRatio = 1.18;
   const Se3 T_C_W = T_W_C.inverse();
   for (const LandmarkSighting& sighting : sightings) {
     MapLandmark& landmark = map_.landmarks().at(sighting.id);

@@ -37,17 +37,16 @@ ceres::Solver::Options SolverOptions(const BundleOptions& options, const BundleG
   return solver;
 }
 
-/// One run of Levenberg-Marquardt.
-void Minimize(int max_iterations, ceres::Solver::Options solver, BundleGraph* graph,
+/// One run of Levenberg-Marquardt. Returns the cost it started from.
+double Minimize(int max_iterations, ceres::Solver::Options solver, BundleGraph* graph,
               BundleSummary* summary) {
   solver.max_num_iterations = max_iterations;
   ceres::Solver::Summary report;
   ceres::Solve(solver, &graph->ceres_problem(), &report);
-  const bool is_first = summary->num_iterations == 0;
-  if (is_first) summary->initial_cost = report.initial_cost;
   summary->final_cost = report.final_cost;
   summary->has_converged = report.termination_type == ceres::CONVERGENCE;
-  summary->num_iterations += static_cast<int>(report.iterations.size());
+  summary->num_iterations += report.num_successful_steps + report.num_unsuccessful_steps;
+  return report.initial_cost;
 }
 
 }  // namespace
@@ -61,7 +60,7 @@ BundleSummary SolveBundle(const BundleOptions& options, BundleProblem* problem) 
   BundleGraph graph(options, problem);
   const ceres::Solver::Options solver = SolverOptions(options, graph);
   BundleSummary solve;
-  Minimize(options.max_iterations, solver, &graph, &solve);
+  solve.initial_cost = Minimize(options.max_iterations, solver, &graph, &solve);
   if (options.max_iterations_after_elimination > 0 && graph.Eliminate() > 0) {
     Minimize(options.max_iterations_after_elimination, solver, &graph, &solve);
   }

@@ -65,18 +65,20 @@ std::optional<LogEvent> LogSource::NextInput(Header* header) {
     *header = *peeked;
     return event;
   }
+  NoteDamage();
   return std::nullopt;
 }
 
 std::vector<Envelope> LogSource::NextFrame() {
   std::vector<Envelope> frame;
+  if (is_at_end_) return frame;
   if (!next_) next_ = NextInput(&next_header_);
-  if (!next_) return frame;
   newest_ = next_header_;
-  do {
+  while (next_ && !IsNewer(next_header_, *newest_)) {
     frame.push_back({std::move(next_->channel), std::move(next_->payload)});
     next_ = NextInput(&next_header_);
-  } while (next_ && !IsNewer(next_header_, *newest_));
+  }
+  is_at_end_ = !next_;
   return frame;
 }
 
@@ -84,17 +86,16 @@ double LogSource::fraction_done() const {
   return static_cast<double>(reader_.position_bytes()) / static_cast<double>(reader_.num_bytes());
 }
 
-std::string LogSource::damage() const {
-  std::string text;
+void LogSource::NoteDamage() {
   if (reader_.num_lost() > 0) {
-    text += std::to_string(reader_.num_lost()) + " events lost to damage (" +
-            std::to_string(reader_.num_bytes_skipped()) + " bytes skipped)";
+    notes_.push_back(reader_.path() + ": " + std::to_string(reader_.num_lost()) +
+                     " events lost to damage (" + std::to_string(reader_.num_bytes_skipped()) +
+                     " bytes skipped)");
   }
   if (num_without_header_ > 0) {
-    text += (text.empty() ? "" : ", ") + std::to_string(num_without_header_) +
-            " messages too short to have a header";
+    notes_.push_back(reader_.path() + ": " + std::to_string(num_without_header_) +
+                     " messages too short to have a header left out");
   }
-  return text;
 }
 
 }  // namespace airdos

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "processes/node/event_log.h"
@@ -32,8 +33,8 @@ class FrameSource {
   virtual std::vector<Envelope> NextFrame() = 0;
   /// How much of the source was handed out, 0..1.
   virtual double fraction_done() const = 0;
-  /// What is wrong with the source, in words; empty if nothing is.
-  virtual std::string damage() const = 0;
+  /// What people should know about the source, a line each; given once.
+  virtual std::vector<std::string> TakeNotes() = 0;
 };
 
 /// The input channels of a log, in the log's order. A frame ends before the first message of a
@@ -48,18 +49,21 @@ class LogSource : public FrameSource {
 
   std::vector<Envelope> NextFrame() override;
   double fraction_done() const override;
-  std::string damage() const override;
+  std::vector<std::string> TakeNotes() override { return std::exchange(notes_, {}); }
 
  private:
   std::optional<LogEvent> NextInput(Header* header);
+  void NoteDamage();
 
   EventLogReader reader_;
   std::int64_t first_seq_;
   std::int64_t last_seq_;
   std::int64_t num_without_header_ = 0;
+  std::vector<std::string> notes_;
   std::optional<Header> newest_;
   std::optional<LogEvent> next_;  // first message of the frame to come
   Header next_header_;
+  bool is_at_end_ = false;
 };
 
 }  // namespace airdos

@@ -1,9 +1,11 @@
 #include <iostream>
 #include <memory>
 #include <opencv2/core/utility.hpp>
+#include <utility>
 
 #include "common/util/version.h"
 #include "processes/node/lcm_transport.h"
+#include "processes/node/log_source.h"
 #include "processes/node/process_cli.h"
 #include "processes/node/process_usage.h"
 #include "processes/stereo_player/player_loop.h"
@@ -14,18 +16,20 @@ namespace {
 int Play(const airdos::PlayerOptions& options, const airdos::CommonArguments& common) {
   airdos::InstallStopSignals();
   cv::setNumThreads(1);
-  const std::unique_ptr<airdos::StereoSequence> sequence =
-      airdos::OpenStereoSequence(options.data_folder);
   const std::int64_t session = options.session.value_or(airdos::WallClock_us());
+  // Opened before anything is said, so that a wrong path is.
+  std::unique_ptr<airdos::FrameSource> first = airdos::OpenPlayerSource(options, session);
   if (!options.write_log.empty()) {
-    airdos::WriteLog(options, *sequence, session, &std::cerr);
+    airdos::WriteLog(options.write_log, first.get(), &std::cerr);
     return 0;
   }
+  const auto open = [&](int loop) {
+    return loop == 0 ? std::move(first) : airdos::OpenPlayerSource(options, session + loop);
+  };
   airdos::LcmTransport transport(common.lcm_url);
-  airdos::PlayerLoop loop(options, sequence.get(), session, &transport, &std::cerr);
+  airdos::PlayerLoop loop(options, open, &transport, &std::cerr);
   std::cout << "airdos-stereo-player READY version " << airdos::kVersion << " url "
-            << common.lcm_url << " config " << common.config_file << " session " << session
-            << std::endl;
+            << common.lcm_url << " config " << common.config_file << std::endl;
   loop.Run();
   return 0;
 }

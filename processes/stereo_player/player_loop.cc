@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <limits>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 #include "common/util/error.h"
 #include "processes/node/channels.h"
 #include "processes/node/event_log.h"
 #include "processes/node/process_usage.h"
+#include "processes/stereo_player/dataset_source.h"
 
 namespace airdos {
 namespace {
@@ -17,6 +21,20 @@ constexpr int kPollTimeout_ms = 50;
 /// Messages go out no faster than this: a burst of several frames overflows the receivers' socket
 /// buffers (200 kB on a stock kernel) before their threads run.
 constexpr double kMaxBytesPerSecond = 30e6;
+
+// The frame that the messages make up: that of the newest of them. Sources give no message without
+// a header.
+Header HeaderOfFrame(const std::vector<Envelope>& messages) {
+  Header newest;
+  bool is_first = true;
+  for (const Envelope& message : messages) {
+    const auto header = PeekHeader(message.payload.data(), message.payload.size());
+    if (!header || (!is_first && header->seq <= newest.seq)) continue;
+    newest = *header;
+    is_first = false;
+  }
+  return newest;
+}
 
 template <class Message, class Handle>
 LcmTransport::Handler HandlerOf(Handle handle) {
@@ -28,46 +46,43 @@ LcmTransport::Handler HandlerOf(Handle handle) {
 
 }  // namespace
 
-FrameRange RangeOf(const PlayerOptions& options, const StereoSequence& sequence) {
-  const auto num_frames = static_cast<std::int64_t>(sequence.num_frames());
-  const std::int64_t last = options.last.value_or(num_frames - 1);
-  if (last >= num_frames || options.first > last) {
-    throw InputError(options.data_folder + ": has " + std::to_string(num_frames) +
-                     " frames, so --first " + std::to_string(options.first) + " --last " +
-                     std::to_string(last) + " cannot be played");
+std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std::int64_t session) {
+  const std::int64_t last = options.last.value_or(std::numeric_limits<std::int64_t>::max());
+  if (std::filesystem::is_directory(options.data)) {
+    return std::make_unique<DatasetSource>(options.data, options.first, last, session,
+                                           options.image);
   }
-  return {static_cast<std::size_t>(options.first), static_cast<std::size_t>(last)};
+  if (options.session || options.num_loops != 1) {
+    throw InputError(options.data +
+                     ": a log has its own session: it goes without --session and --loop");
+  }
+  return std::make_unique<LogSource>(options.data, options.first, last);
 }
 
-void WriteLog(const PlayerOptions& options, const StereoSequence& sequence, std::int64_t session,
-              std::ostream* log) {
-  const FrameRange range = RangeOf(options, sequence);
-  StereoPlayer player(&sequence, session, options.image);
-  EventLogWriter writer(options.write_log);
-  for (std::size_t index = range.first; index <= range.last && !StopRequested(); ++index) {
-    const StereoPlayer::Frame frame = player.Load(index);
-    for (const Envelope& message : frame.messages) {
-      writer.Append(frame.header.utime, message.channel, message.payload.data(),
-                    message.payload.size());
-    }
+void WriteLog(const std::string& path, FrameSource* source, std::ostream* log) {
+  EventLogWriter writer(path);
+  while (!StopRequested()) {
+    const std::vector<Envelope> frame = source->NextFrame();
+    for (const std::string& note : source->TakeNotes()) *log << note << std::endl;
+    if (frame.empty()) break;
+    const std::int64_t utime = HeaderOfFrame(frame).utime;
+    for (const Envelope& message : frame)
+      writer.Append(utime, message.channel, message.payload.data(), message.payload.size());
   }
-  for (const std::string& note : player.TakeNotes()) *log << note << std::endl;
   writer.Sync();
-  *log << "airdos-stereo-player: " << options.write_log << ": " << writer.num_events()
-       << " messages, " << writer.num_bytes() << " bytes" << std::endl;
+  *log << "airdos-stereo-player: " << path << ": " << writer.num_events() << " messages, "
+       << writer.num_bytes() << " bytes" << std::endl;
 }
 
-PlayerLoop::PlayerLoop(const PlayerOptions& options, const StereoSequence* sequence,
-                       std::int64_t session, LcmTransport* transport, std::ostream* log)
+PlayerLoop::PlayerLoop(const PlayerOptions& options, OpenSource open_source,
+                       LcmTransport* transport, std::ostream* log)
     : options_(options),
-      sequence_(sequence),
-      session_(session),
+      open_source_(std::move(open_source)),
       transport_(transport),
       log_(log),
       gate_(options.gate, SteadyClock_s()) {}
 
 void PlayerLoop::Run() {
-  RangeOf(options_, *sequence_);
   transport_->Subscribe(channel::kStatus,
                         HandlerOf<process_status_t>([this](const process_status_t& status) {
                           gate_.OnStatus(status, SteadyClock_s());
@@ -79,7 +94,7 @@ void PlayerLoop::Run() {
   const double start_s = SteadyClock_s();
   for (int loop = 0; loop < options_.num_loops || options_.num_loops == 0; ++loop) {
     if (StopRequested()) break;
-    PlayOnce(session_ + loop);
+    PlayOnce(open_source_(loop).get());
   }
   if (options_.pace == PlayerPace::kLockstep) WaitUntilAllDone();
   std::ostringstream line;
@@ -89,27 +104,21 @@ void PlayerLoop::Run() {
   Say(line.str());
 }
 
-void PlayerLoop::PlayOnce(std::int64_t session) {
-  const FrameRange range = RangeOf(options_, *sequence_);
-  StereoPlayer player(sequence_, session, options_.image);
-  double start_s = 0;
-  std::int64_t first_utime = 0;
-  for (std::size_t index = range.first; index <= range.last; ++index) {
-    const StereoPlayer::Frame frame = player.Load(index);
-    SayNotes(&player);
-    if (index == range.first || options_.pace == PlayerPace::kLockstep) WaitUntilMayPublish();
-    if (index == range.first) {
-      start_s = SteadyClock_s();
-      first_utime = frame.header.utime;
-    }
+void PlayerLoop::PlayOnce(FrameSource* source) {
+  std::optional<std::pair<double, std::int64_t>> start;  // s on our clock, us of capture time
+  while (true) {
+    const std::vector<Envelope> messages = source->NextFrame();
+    SayNotes(source);
+    if (messages.empty()) return;
+    const Header header = HeaderOfFrame(messages);
+    if (!start || options_.pace == PlayerPace::kLockstep) WaitUntilMayPublish();
+    if (!start) start = {SteadyClock_s(), header.utime};
     if (options_.pace == PlayerPace::kRealtime) {
-      WaitForTime(start_s +
-                  1e-6 * static_cast<double>(frame.header.utime - first_utime) / options_.rate);
+      WaitForTime(start->first +
+                  1e-6 * static_cast<double>(header.utime - start->second) / options_.rate);
     }
     if (StopRequested()) return;
-    const bool has_calibration = frame.messages.front().channel == channel::kCalibration;
-    if (gate_.TakeNewcomer() && !has_calibration) Publish(player.Calibration(frame.header));
-    PublishFrame(frame);
+    PublishFrame(messages, header);
   }
 }
 
@@ -139,9 +148,13 @@ void PlayerLoop::Listen(int timeout_ms) {
   SayNotes(nullptr);
 }
 
-void PlayerLoop::PublishFrame(const StereoPlayer::Frame& frame) {
-  for (const Envelope& message : frame.messages) Publish(message);
-  gate_.OnPublished(frame.header.session, frame.header.seq, SteadyClock_s());
+void PlayerLoop::PublishFrame(const std::vector<Envelope>& messages, const Header& header) {
+  if (gate_.TakeNewcomer() && calibration_) Publish(*calibration_);
+  for (const Envelope& message : messages) {
+    if (message.channel == channel::kCalibration) calibration_ = message;
+    Publish(message);
+  }
+  gate_.OnPublished(header.session, header.seq, SteadyClock_s());
   ++num_published_;
 }
 
@@ -153,10 +166,10 @@ void PlayerLoop::Publish(const Envelope& message) {
       static_cast<double>(message.payload.size()) / kMaxBytesPerSecond));
 }
 
-void PlayerLoop::SayNotes(StereoPlayer* player) {
+void PlayerLoop::SayNotes(FrameSource* source) {
   for (const std::string& note : gate_.TakeNotes()) Say(note);
-  if (player == nullptr) return;
-  for (const std::string& note : player->TakeNotes()) Say(note);
+  if (source == nullptr) return;
+  for (const std::string& note : source->TakeNotes()) Say(note);
 }
 
 void PlayerLoop::Say(const std::string& line) {

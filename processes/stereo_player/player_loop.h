@@ -2,56 +2,57 @@
 #define AIRDOS_PROCESSES_STEREO_PLAYER_PLAYER_LOOP_H_
 
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <ostream>
 #include <string>
 
-#include "common/dataset/stereo_sequence.h"
 #include "processes/node/lcm_transport.h"
+#include "processes/node/log_source.h"
 #include "processes/stereo_player/lockstep_gate.h"
 #include "processes/stereo_player/player_options.h"
-#include "processes/stereo_player/stereo_player.h"
 
 namespace airdos {
 
-/// Which frames of the sequence are asked for. Throws InputError where there are none.
-struct FrameRange {
-  std::size_t first = 0;
-  std::size_t last = 0;  ///< included
-};
-FrameRange RangeOf(const PlayerOptions& options, const StereoSequence& sequence);
+/// What `options` say is to be played. `session` is that of a data set; a log has its own. Throws
+/// InputError.
+std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std::int64_t session);
 
 /// Writes what the player would publish as an LCM log; the times in it are capture times, so that
 /// the same frames give the same file.
-void WriteLog(const PlayerOptions& options, const StereoSequence& sequence, std::int64_t session,
-              std::ostream* log);
+void WriteLog(const std::string& path, FrameSource* source, std::ostream* log);
 
-/// Publishes a sequence over LCM, as fast as the other processes are done or as cameras would.
+/// Publishes a source over LCM, as fast as the other processes are done or as cameras would.
 class PlayerLoop {
  public:
-  /// Nothing is owned. `log` takes what people are to read, one line each.
-  PlayerLoop(const PlayerOptions& options, const StereoSequence* sequence, std::int64_t session,
-             LcmTransport* transport, std::ostream* log);
+  /// Opens the source for one more time; `loop` counts from 0.
+  using OpenSource = std::function<std::unique_ptr<FrameSource>(int loop)>;
+
+  /// The transport is not owned. `log` takes what people are to read, one line each.
+  PlayerLoop(const PlayerOptions& options, OpenSource open_source, LcmTransport* transport,
+             std::ostream* log);
 
   /// Returns after the last frame is done everywhere, or when StopRequested().
   void Run();
 
  private:
-  void PlayOnce(std::int64_t session);
+  void PlayOnce(FrameSource* source);
   void WaitUntilMayPublish();
   void WaitForTime(double due_s);
   void WaitUntilAllDone();
-  void PublishFrame(const StereoPlayer::Frame& frame);
+  void PublishFrame(const std::vector<Envelope>& messages, const Header& header);
   void Publish(const Envelope& message);
   void Listen(int timeout_ms);
   void Say(const std::string& line);
-  void SayNotes(StereoPlayer* player);
+  void SayNotes(FrameSource* source);
 
   PlayerOptions options_;
-  const StereoSequence* sequence_;
-  std::int64_t session_;
+  OpenSource open_source_;
   LcmTransport* transport_;
   std::ostream* log_;
   LockstepGate gate_;
+  std::optional<Envelope> calibration_;  // the last one, for a process that comes later
   std::int64_t num_published_ = 0;
   std::int64_t num_not_published_ = 0;  // messages that the network did not take
 };

@@ -38,12 +38,13 @@ std::vector<int> ToQualities(const std::string& text) {
 PlayerArguments::PlayerArguments(CLI::App* app) {
   using Encoding = ImagePackerOptions::Encoding;
   AddCommonOptions("stereo_player", app, &common_);
-  app->add_option("--data", options_.data_folder,
-                  "Folder of the sequence (TartanAir-Shibuya or KITTI odometry layout)")
+  app->add_option("--data", options_.data,
+                  "Folder (TartanAir-Shibuya or KITTI odometry layout) or LCM log")
       ->required();
   app->add_option("--first", options_.first, "First frame")->check(CLI::NonNegativeNumber);
   app->add_option("--last", options_.last, "Last frame, included")->check(CLI::NonNegativeNumber);
-  app->add_option("--session", options_.session, "Session number; default: the wall clock in us");
+  app->add_option("--session", options_.session,
+                  "Session number; default: the wall clock in us, or that of the log");
   app->add_option("--loop", options_.num_loops, "How often to play, each a session; 0: for ever")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);

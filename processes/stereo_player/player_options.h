@@ -16,7 +16,7 @@ enum class PlayerPace { kLockstep, kRealtime };
 
 /// What the player is asked to do.
 struct PlayerOptions {
-  std::string data_folder;
+  std::string data;  ///< folder of a data set, or LCM log
   std::int64_t first = 0;
   std::optional<std::int64_t> last;     ///< included; without: the last one there is
   std::optional<std::int64_t> session;  ///< without: the wall clock, us

@@ -161,19 +161,19 @@ ReplayResult Replay(FrameSource* source, const std::vector<ReplayNode>& nodes,
   bus.AddObserver([&archive](const Envelope& message) { archive.Take(message); });
   bus.SetWorkObserver(&stopwatch);
 
+  ReplayResult result;
   for (;;) {
     std::vector<Envelope> frame = source->NextFrame();
+    for (const std::string& note : source->TakeNotes()) result.remarks.push_back(note);
     if (frame.empty()) break;
     for (Envelope& message : frame) bus.Publish(std::move(message));
     if (options.on_progress) options.on_progress(source->fraction_done());
   }
   bus.Finish();
 
-  ReplayResult result;
   archive.Fill(&result);
   if (!options.out_path.empty()) result.log_sha256 = FileSha256(options.out_path);
   result.timing = stopwatch.TakeTiming();
-  if (!source->damage().empty()) result.remarks.push_back("input: " + source->damage());
   for (const ReplayNode& entry : nodes) AddRemarks(*entry.node, &result.remarks);
   return result;
 }

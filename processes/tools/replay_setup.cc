@@ -18,10 +18,12 @@
 #include "processes/map_recorder/map_recorder_node.h"
 #include "processes/node/channels.h"
 #include "processes/optimizer/optimizer_node.h"
-#include "processes/tools/dataset_source.h"
+#include "processes/stereo_player/dataset_source.h"
 
 namespace airdos {
 namespace {
+
+constexpr std::int64_t kSession = 1;  // of data sets: always the same, so that runs compare
 
 struct Process {
   std::string name;  // of its configuration file and in overrides
@@ -101,7 +103,7 @@ std::vector<ReplayNode> MakeReplayNodes(const ReplaySetup& setup) {
 std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, std::int64_t first,
                                              std::int64_t last) {
   if (std::filesystem::is_directory(path))
-    return std::make_unique<DatasetSource>(path, first, last);
+    return std::make_unique<DatasetSource>(path, first, last, kSession, ImagePackerOptions());
   return std::make_unique<LogSource>(path, first, last);
 }
 

@@ -176,7 +176,7 @@ TEST_F(ReplayTest, IncompleteEndAndDamageAreSaid) {
   EXPECT_EQ(result.num_frames, 10);
   EXPECT_EQ(result.digests.at(channel::kStateEstimate).num_messages, 10);
   const std::string text = FormatSummary(result);
-  EXPECT_NE(text.find("input: 1 events lost to damage"), std::string::npos) << text;
+  EXPECT_NE(text.find("in.lcm: 1 events lost to damage"), std::string::npos) << text;
   EXPECT_NE(text.find("frontend: 1 frames incomplete"), std::string::npos) << text;
   EXPECT_NE(text.find("frontend: CAMERA_RIGHT: 1 missing"), std::string::npos) << text;
 }

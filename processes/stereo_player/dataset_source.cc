@@ -1,0 +1,33 @@
+#include "processes/stereo_player/dataset_source.h"
+
+#include <algorithm>
+
+#include "common/util/error.h"
+
+namespace airdos {
+
+DatasetSource::DatasetSource(const std::string& folder, std::int64_t first, std::int64_t last,
+                             std::int64_t session, const ImagePackerOptions& options)
+    : sequence_(OpenStereoSequence(folder)), player_(sequence_.get(), session, options) {
+  const auto newest = static_cast<std::int64_t>(sequence_->num_frames()) - 1;
+  const std::int64_t from = std::max<std::int64_t>(0, first);
+  const std::int64_t to = std::min(last, newest);
+  if (from > to) {
+    throw InputError(folder + ": has frames 0 to " + std::to_string(newest) +
+                     ", so there is none from --first to --last");
+  }
+  first_ = static_cast<std::size_t>(from);
+  end_ = static_cast<std::size_t>(to) + 1;
+  next_ = first_;
+}
+
+std::vector<Envelope> DatasetSource::NextFrame() {
+  if (next_ == end_) return {};
+  return player_.Load(next_++).messages;
+}
+
+double DatasetSource::fraction_done() const {
+  return static_cast<double>(next_ - first_) / static_cast<double>(end_ - first_);
+}
+
+}  // namespace airdos

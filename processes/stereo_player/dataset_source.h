@@ -1,0 +1,38 @@
+#ifndef AIRDOS_PROCESSES_STEREO_PLAYER_DATASET_SOURCE_H_
+#define AIRDOS_PROCESSES_STEREO_PLAYER_DATASET_SOURCE_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/dataset/stereo_sequence.h"
+#include "processes/node/log_source.h"
+#include "processes/stereo_player/stereo_player.h"
+
+namespace airdos {
+
+/// The frames of a data set as StereoPlayer makes them.
+class DatasetSource : public FrameSource {
+ public:
+  /// Frames with first <= index <= last; the image number is the index. Throws InputError if the
+  /// folder cannot be used or has none of these; so does NextFrame() for a file.
+  DatasetSource(const std::string& folder, std::int64_t first, std::int64_t last,
+                std::int64_t session, const ImagePackerOptions& options);
+
+  std::vector<Envelope> NextFrame() override;
+  double fraction_done() const override;
+  std::vector<std::string> TakeNotes() override { return player_.TakeNotes(); }
+
+ private:
+  std::unique_ptr<StereoSequence> sequence_;
+  StereoPlayer player_;
+  std::size_t first_ = 0;
+  std::size_t end_ = 0;
+  std::size_t next_ = 0;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_STEREO_PLAYER_DATASET_SOURCE_H_

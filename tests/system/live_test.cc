@@ -1,0 +1,230 @@
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "airdos/frame_done_t.hpp"
+#include "processes/node/channels.h"
+#include "processes/node/codec.h"
+#include "processes/node/event_log.h"
+#include "processes/node/log_source.h"
+#include "processes/tools/replay.h"
+#include "tests/support/process.h"
+
+// The real programs as real processes, in a network namespace of their own: what they say over LCM
+// must be what airdos-replay computes, and none of them may take the others down.
+
+namespace airdos {
+namespace {
+
+constexpr double kStartDeadline_s = 30;
+constexpr double kRunDeadline_s = 240;
+
+std::string Program(const std::string& name) {
+  return std::string(AIRDOS_BINARY_DIR) + "/bin/" + name;
+}
+
+std::string Bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+class LiveTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(std::filesystem::exists(log_)) << log_ << " is missing";
+    const std::string obstacle = EnterOwnNetwork();
+    if (!obstacle.empty()) GTEST_SKIP() << obstacle;
+    std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    for (char& c : name) c = c == '/' ? '_' : c;
+    folder_ = testing::TempDir() + "airdos_live_" + name + "/";
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    LogSource source(log_);
+    while (true) {
+      const std::vector<Envelope> frame = source.NextFrame();
+      if (frame.empty()) break;
+      last_ = PeekHeader(frame.back().payload.data(), frame.back().payload.size()).value();
+      ++num_frames_;
+    }
+  }
+  void TearDown() override {
+    processes_.clear();
+    // What the processes said is kept where a test failed.
+    if (!folder_.empty() && !HasFailure()) std::filesystem::remove_all(folder_);
+  }
+
+  Process* Start(const std::string& program, const std::vector<std::string>& arguments) {
+    std::vector<std::string> command{program.find("lcm-") == 0 ? program : Program(program)};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    processes_[program] = std::make_unique<Process>(command, folder_ + program + ".txt");
+    return processes_[program].get();
+  }
+  Process* StartNode(const std::string& program, const std::string& deadline_s) {
+    std::vector<std::string> arguments{"--pace", "lockstep", "--deadline-s", deadline_s};
+    if (program == "airdos-map-recorder") {
+      arguments.push_back("--set");
+      arguments.push_back("output.directory=" + folder_ + "map");
+    }
+    return Start(program, arguments);
+  }
+  static const std::vector<std::string>& NodePrograms() {
+    static const std::vector<std::string> programs{"airdos-frontend", "airdos-human-tracker",
+                                                   "airdos-optimizer", "airdos-map-recorder"};
+    return programs;
+  }
+
+  // All nodes and the recorder, READY.
+  void StartAll(const std::string& deadline_s) {
+    for (const std::string& program : NodePrograms()) StartNode(program, deadline_s);
+    Start("airdos-record", {"--out", recorded_log()});
+    for (const auto& [program, process] : processes_) {
+      const Process* started = process.get();
+      ASSERT_TRUE(PollUntil([&] { return started->HasSaid(" READY "); }, kStartDeadline_s))
+          << program << ": " << started->Output();
+    }
+  }
+  void StopAll() {
+    for (const auto& [program, process] : processes_) {
+      process->Signal(SIGINT);
+      EXPECT_EQ(process->Wait(kStartDeadline_s), 0) << program << ": " << process->Output();
+    }
+  }
+  std::string recorded_log() const { return folder_ + "recorded.lcm"; }
+
+  // Messages of each channel that were recorded up to now, without a copy of the payloads.
+  template <class Visit>
+  void VisitRecorded(Visit visit) const {
+    if (!std::filesystem::exists(recorded_log()) || std::filesystem::file_size(recorded_log()) == 0)
+      return;
+    EventLogReader reader(recorded_log());
+    while (const auto event = reader.Next()) visit(*event);
+  }
+  std::int64_t NumRecorded(const std::string& channel) const {
+    std::int64_t count = 0;
+    VisitRecorded([&](const LogEvent& event) { count += event.channel == channel ? 1 : 0; });
+    return count;
+  }
+  bool IsLastFrameDoneBy(const std::string& process) const {
+    bool is_done = false;
+    VisitRecorded([&](const LogEvent& event) {
+      frame_done_t done;
+      if (event.channel != channel::kFrameDone) return;
+      if (!Decode(event.payload.data(), event.payload.size(), &done)) return;
+      is_done |= done.process == process && done.session == last_.session && done.seq == last_.seq;
+    });
+    return is_done;
+  }
+  void WaitForLastFrame() {
+    EXPECT_TRUE(
+        PollUntil([this] { return IsLastFrameDoneBy("airdos-map-recorder"); }, kRunDeadline_s))
+        << "STATE_ESTIMATE: " << NumRecorded(channel::kStateEstimate) << " of " << num_frames_
+        << "\n"
+        << processes_["airdos-optimizer"]->Output();
+  }
+
+  // What airdos-replay makes of the log.
+  void RunReplay(const std::string& out) {
+    Process* replay = Start("airdos-replay", {log_, "--out", folder_ + out, "--run-dir",
+                                              folder_ + "map_" + out, "--no-progress"});
+    ASSERT_EQ(replay->Wait(kRunDeadline_s), 0) << replay->Output();
+    processes_.erase("airdos-replay");
+  }
+  void ExpectRecordedEqualsReplayed() {
+    RunReplay("replayed.lcm");
+    const auto replayed = DigestLog(folder_ + "replayed.lcm");
+    EXPECT_EQ(replayed.size(), 4u);
+    EXPECT_EQ(replayed.at(channel::kStateEstimate).num_messages, num_frames_);
+    EXPECT_EQ(FormatDigests(DigestLog(recorded_log())), FormatDigests(replayed));
+  }
+
+  const std::string log_ = std::string(AIRDOS_SOURCE_DIR) + "/logs/road_crossing06.lcm";
+  std::string folder_;
+  Header last_;
+  std::int64_t num_frames_ = 0;
+  std::map<std::string, std::unique_ptr<Process>> processes_;
+};
+
+TEST_F(LiveTest, ReplayTwiceGivesTheSameBytes) {
+  RunReplay("1.lcm");
+  RunReplay("2.lcm");
+  const std::string first = Bytes(folder_ + "1.lcm");
+  EXPECT_FALSE(first.empty());
+  EXPECT_TRUE(first == Bytes(folder_ + "2.lcm"));
+}
+
+TEST_F(LiveTest, ProcessesFedByLogplayerSayWhatReplayComputes) {
+  ASSERT_NO_FATAL_FAILURE(StartAll("120"));
+  Process* player = Start("lcm-logplayer", {"-s", "1", log_});
+  EXPECT_EQ(player->Wait(kRunDeadline_s), 0) << player->Output();
+  WaitForLastFrame();
+  StopAll();
+  ExpectRecordedEqualsReplayed();
+}
+
+TEST_F(LiveTest, ProcessesFedInLockstepSayWhatReplayComputes) {
+  ASSERT_NO_FATAL_FAILURE(StartAll("120"));
+  Process* player = Start("airdos-stereo-player", {"--data", log_, "--pace", "lockstep"});
+  EXPECT_EQ(player->Wait(kRunDeadline_s), 0) << player->Output();
+  WaitForLastFrame();
+  StopAll();
+  ExpectRecordedEqualsReplayed();
+}
+
+class KilledProcessTest : public LiveTest, public testing::WithParamInterface<const char*> {};
+
+// One process is killed in the middle and started again: the others go on, somebody says what is
+// missing, and the new one takes part.
+TEST_P(KilledProcessTest, OthersGoOnAndSayWhatTheyMiss) {
+  const std::string victim = GetParam();
+  const std::map<std::string, std::string> products{
+      {"airdos-frontend", channel::kStaticFeatures},
+      {"airdos-human-tracker", channel::kHumanObservations},
+      {"airdos-optimizer", channel::kStateEstimate}};
+  ASSERT_NO_FATAL_FAILURE(StartAll("0.5"));
+  Process* player = Start("lcm-logplayer", {"-s", "0.5", log_});
+  ASSERT_TRUE(
+      PollUntil([this] { return NumRecorded(channel::kStateEstimate) >= 5; }, kRunDeadline_s));
+
+  processes_[victim]->Signal(SIGKILL);
+  EXPECT_EQ(processes_[victim]->Wait(kStartDeadline_s), 128 + SIGKILL);
+  const auto product = products.find(victim);
+  if (product != products.end()) {
+    const auto somebody_misses_it = [&] {
+      for (const auto& [program, process] : processes_) {
+        if (process->HasSaid("nothing on ") && process->HasSaid(product->second)) return true;
+      }
+      return false;
+    };
+    EXPECT_TRUE(PollUntil(somebody_misses_it, kRunDeadline_s));
+  }
+  std::filesystem::remove(folder_ + victim + ".txt");
+  StartNode(victim, "0.5");
+  ASSERT_TRUE(PollUntil([&] { return processes_[victim]->HasSaid(" READY "); }, kStartDeadline_s));
+  const std::int64_t num_before = product == products.end() ? 0 : NumRecorded(product->second);
+  EXPECT_EQ(player->Wait(kRunDeadline_s), 0) << player->Output();
+  WaitForLastFrame();
+  if (product != products.end()) EXPECT_GT(NumRecorded(product->second), num_before);
+  StopAll();
+}
+
+INSTANTIATE_TEST_SUITE_P(EachProcess, KilledProcessTest,
+                         testing::Values("airdos-frontend", "airdos-human-tracker",
+                                         "airdos-optimizer", "airdos-map-recorder"),
+                         [](const auto& info) {
+                           std::string name = info.param;
+                           for (char& c : name) c = c == '-' ? '_' : c;
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace airdos

@@ -1,0 +1,236 @@
+#include "common/features/pose_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <random>
+
+#include "tests/support/rendered_scene.h"
+
+namespace airdos {
+namespace {
+
+const StereoCamera kCamera = SmallStereoCamera();
+
+Se3 TruePose() {
+  Se3 T_W_C;
+  T_W_C.translation = {1.5, -0.4, 3.0};
+  T_W_C.rotation = ExpSo3({0.2, -0.7, 0.1});
+  return T_W_C;
+}
+
+Se3 StartOff() {
+  Vector6d delta;
+  delta << 0.3, -0.2, 0.25, 0.06, -0.08, 0.05;
+  return Boxplus(TruePose(), delta);
+}
+
+/// Points all over the image, 2 to 12 m away, as seen from TruePose() with Gaussian noise.
+std::vector<PoseObservation> Observe(int count, double noise_px, std::uint32_t seed,
+                                     bool has_right = true) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::normal_distribution<double> normal;
+  std::vector<PoseObservation> observations;
+  for (int i = 0; i < count; ++i) {
+    const double z = 2 + 10 * uniform(random);
+    const double u = kCamera.width * uniform(random);
+    const double v = kCamera.height * uniform(random);
+    const Eigen::Vector3d p_C((u - kCamera.cx_px) / kCamera.fx_px * z,
+                              (v - kCamera.cy_px) / kCamera.fy_px * z, z);
+    PoseObservation observation;
+    observation.p_W = TruePose() * p_C;
+    observation.uvu_px = kCamera.ProjectStereo(p_C) +
+                         noise_px * Eigen::Vector3d(normal(random), normal(random), normal(random));
+    observation.has_right = has_right;
+    if (!has_right) observation.uvu_px.z() = -1e6;  // must not be looked at
+    observations.push_back(observation);
+  }
+  return observations;
+}
+
+/// Moves every observation i with i % 5 < 2 far off: 40 %.
+void AddOutliers(std::vector<PoseObservation>* observations, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> far(-60, 60);
+  for (std::size_t i = 0; i < observations->size(); ++i) {
+    if (i % 5 < 2) (*observations)[i].uvu_px += Eigen::Vector3d(far(random), far(random), 25);
+  }
+}
+
+double Error(const Se3& a, const Se3& b) { return Boxminus(a, b).norm(); }
+
+TEST(PoseEstimator, WithoutNoiseThePoseIsExact) {
+  const PoseEstimate estimate = EstimatePose(kCamera, Observe(40, 0, 1), StartOff(), std::nullopt);
+  EXPECT_LT(Error(estimate.T_W_C, TruePose()), 1e-9);
+  EXPECT_EQ(estimate.num_inliers, 40);
+}
+
+TEST(PoseEstimator, TheLeftImageAloneIsEnough) {
+  const PoseEstimate estimate =
+      EstimatePose(kCamera, Observe(40, 0, 1, false), StartOff(), std::nullopt);
+  EXPECT_LT(Error(estimate.T_W_C, TruePose()), 1e-8);
+  EXPECT_EQ(estimate.num_inliers, 40);
+}
+
+TEST(PoseEstimator, ConvergesFastBecauseTheJacobianIsRight) {
+  // 3 stereo points, the fewest that will do: a wrong entry of the Jacobian shows at once. The
+  // estimator has at most 24 steps; from 5 mm and 5 mrad, Gauss-Newton needs about 4.
+  Vector6d delta;
+  delta << 0.005, -0.004, 0.003, 0.004, -0.005, 0.003;
+  const PoseEstimate estimate =
+      EstimatePose(kCamera, Observe(3, 0, 8), Boxplus(TruePose(), delta), std::nullopt);
+  EXPECT_LT(Error(estimate.T_W_C, TruePose()), 1e-10);
+}
+
+/// Inverse of J^T J by central differences of the projection; of the tangent in C.
+Matrix6d Covariance(const std::vector<PoseObservation>& observations, double sigma_px) {
+  Matrix6d information = Matrix6d::Zero();
+  for (const PoseObservation& observation : observations) {
+    Eigen::Matrix<double, 3, 6> J;
+    for (int i = 0; i < 6; ++i) {
+      constexpr double kStep = 1e-6;
+      const Vector6d delta = kStep * Vector6d::Unit(i);
+      J.col(i) = (kCamera.ProjectStereo(Boxplus(TruePose(), delta).inverse() * observation.p_W) -
+                  kCamera.ProjectStereo(Boxplus(TruePose(), -delta).inverse() * observation.p_W)) /
+                 (2 * kStep);
+    }
+    information += J.transpose() * J / (sigma_px * sigma_px);
+  }
+  return information.inverse();
+}
+
+TEST(PoseEstimator, NoiseGivesTheErrorThatTheCovarianceSays) {
+  constexpr int kTrials = 200;
+  double sum = 0;
+  for (std::uint32_t seed = 1; seed <= kTrials; ++seed) {
+    std::vector<PoseObservation> observations = Observe(30, 0.5, seed);
+    for (PoseObservation& observation : observations) observation.sigma_px = 0.5;
+    const PoseEstimate estimate = EstimatePose(kCamera, observations, StartOff(), std::nullopt);
+    const Vector6d error = Boxminus(estimate.T_W_C, TruePose());
+    sum += error.dot(Covariance(observations, 0.5).inverse() * error);
+  }
+  // Chi-square of 6 degrees of freedom has mean 6; over 200 trials its mean spreads by sqrt(12 /
+  // 200) = 0.25. Setting aside the 5 % beyond the bound loses up to a tenth of the information.
+  EXPECT_GT(sum / kTrials, 6 - 4 * 0.25);
+  EXPECT_LT(sum / kTrials, (6 + 4 * 0.25) / 0.9);
+}
+
+TEST(PoseEstimator, PreciseObservationsWeighMore) {
+  // Half of the observations are shifted by 2 px and say so in their sigma.
+  std::vector<PoseObservation> observations = Observe(60, 0, 3);
+  for (std::size_t i = 0; i < observations.size(); i += 2) {
+    observations[i].uvu_px += Eigen::Vector3d(2, 2, 2);
+    observations[i].sigma_px = 20;
+    observations[i + 1].sigma_px = 0.2;
+  }
+  const PoseEstimate estimate = EstimatePose(kCamera, observations, StartOff(), std::nullopt);
+  EXPECT_LT(Error(estimate.T_W_C, TruePose()), 1e-4);
+}
+
+TEST(PoseEstimator, FortyPercentOutliersAreSetAside) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    std::vector<PoseObservation> observations = Observe(100, 0.3, seed);
+    AddOutliers(&observations, seed);
+    const PoseEstimate estimate = EstimatePose(kCamera, observations, StartOff(), std::nullopt);
+    // 60 inliers of 0.3 px: some 5 mm and 1 mrad; with one outlier of 25 px in, ten times more.
+    EXPECT_LT(Error(estimate.T_W_C, TruePose()), 0.03) << "seed " << seed;
+    for (std::size_t i = 0; i < observations.size(); ++i) {
+      if (i % 5 < 2) {
+        EXPECT_FALSE(estimate.is_inlier[i]) << "seed " << seed << ", " << i;
+      }
+    }
+    EXPECT_GE(estimate.num_inliers, 55);
+    EXPECT_LE(estimate.num_inliers, 60);
+  }
+}
+
+TEST(PoseEstimator, WithoutAnythingTheStartComesBack) {
+  const PoseEstimate none = EstimatePose(kCamera, {}, StartOff(), std::nullopt);
+  EXPECT_EQ(Error(none.T_W_C, StartOff()), 0);
+  EXPECT_EQ(none.num_inliers, 0);
+  const PoseEstimate two = EstimatePose(kCamera, Observe(2, 0, 1), StartOff(), std::nullopt);
+  EXPECT_EQ(Error(two.T_W_C, StartOff()), 0);
+}
+
+TEST(PoseEstimator, ThePriorAloneIsReturned) {
+  const PoseEstimate estimate =
+      EstimatePose(kCamera, {}, StartOff(), PosePrior{TruePose(), 0.04, 0.05});
+  EXPECT_LT(Error(estimate.T_W_C, TruePose()), 1e-9);
+}
+
+TEST(PoseEstimator, ThePriorHoldsWhatTwoPointsLeaveFree) {
+  // Two points leave the turn about the line between them free: it comes from the prior, which is
+  // right about it; the rest from the points.
+  const std::vector<PoseObservation> observations = Observe(2, 0, 5);
+  const PosePrior prior{TruePose(), 0.04, 0.05};
+  EXPECT_LT(Error(EstimatePose(kCamera, observations, StartOff(), prior).T_W_C, TruePose()), 1e-6);
+}
+
+TEST(PoseEstimator, ThePriorIsWeighedAgainstTheObservations) {
+  // The prior is off by one sigma on each axis. Many precise points overrule it, and the wider it
+  // is, the more so.
+  Vector6d off;
+  off << 0.04, 0.04, 0.04, 0.05, 0.05, 0.05;
+  std::vector<PoseObservation> observations = Observe(4, 0, 2);
+  for (PoseObservation& observation : observations) observation.sigma_px = 5;
+  const Se3 mean = Boxplus(TruePose(), off);
+  const double tight = Error(
+      EstimatePose(kCamera, observations, mean, PosePrior{mean, 0.04, 0.05}).T_W_C, TruePose());
+  const double wide =
+      Error(EstimatePose(kCamera, observations, mean, PosePrior{mean, 0.4, 0.5}).T_W_C, TruePose());
+  EXPECT_LT(wide, 0.2 * tight);
+  EXPECT_LT(tight, off.norm());
+  EXPECT_GT(tight, 0.05 * off.norm());
+}
+
+TEST(PoseEstimator, PointsBehindTheCameraAreNoInliers) {
+  std::vector<PoseObservation> observations = Observe(30, 0, 4);
+  for (std::size_t i = 0; i < 10; ++i) {
+    // Mirrored through the camera's centre, it projects to the same pixel.
+    observations[i].p_W = 2 * TruePose().translation - observations[i].p_W;
+  }
+  const PoseEstimate estimate = EstimatePose(kCamera, observations, StartOff(), std::nullopt);
+  EXPECT_LT(Error(estimate.T_W_C, TruePose()), 1e-9);
+  EXPECT_EQ(estimate.num_inliers, 20);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_FALSE(estimate.is_inlier[i]);
+}
+
+TEST(PoseEstimator, OnlyPointsBehindTheCameraGiveThePrior) {
+  std::vector<PoseObservation> observations = Observe(10, 0, 4);
+  for (PoseObservation& observation : observations)
+    observation.p_W = 2 * TruePose().translation - observation.p_W;
+  const PoseEstimate estimate =
+      EstimatePose(kCamera, observations, TruePose(), PosePrior{TruePose(), 0.04, 0.05});
+  EXPECT_LT(Error(estimate.T_W_C, TruePose()), 1e-9);
+  EXPECT_EQ(estimate.num_inliers, 0);
+}
+
+TEST(PoseEstimatorRansac, FindsThePoseFromNothing) {
+  std::vector<PoseObservation> observations = Observe(100, 0.3, 6);
+  AddOutliers(&observations, 6);
+  const std::optional<Se3> T_W_C = EstimatePoseRansac(kCamera, observations, 4);
+  ASSERT_TRUE(T_W_C);
+  // A start only: the pose of the best few points, refined on what agrees within 4 px.
+  EXPECT_LT(Error(*T_W_C, TruePose()), 0.1);
+}
+
+TEST(PoseEstimatorRansac, TwiceTheSameBits) {
+  std::vector<PoseObservation> observations = Observe(100, 0.3, 6);
+  AddOutliers(&observations, 6);
+  const std::optional<Se3> a = EstimatePoseRansac(kCamera, observations, 4);
+  const std::optional<Se3> b = EstimatePoseRansac(kCamera, observations, 4);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->translation, b->translation);
+  EXPECT_EQ(a->rotation.coeffs(), b->rotation.coeffs());
+}
+
+TEST(PoseEstimatorRansac, NothingFromFewPoints) {
+  EXPECT_FALSE(EstimatePoseRansac(kCamera, {}, 4));
+  EXPECT_FALSE(EstimatePoseRansac(kCamera, Observe(5, 0, 1), 4));
+  EXPECT_TRUE(EstimatePoseRansac(kCamera, Observe(6, 0, 1), 4));
+}
+
+}  // namespace
+}  // namespace airdos
