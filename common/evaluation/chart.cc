@@ -155,8 +155,8 @@ void DrawLegend(const Chart& chart, const Frame& frame, cv::Mat* picture) {
   cv::rectangle(*picture, best, kGrid);
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     const int row = best.y + 22 + 26 * static_cast<int>(i);
-    cv::line(*picture, {best.x + 12, row - 5}, {best.x + 48, row - 5}, chart.series[i].color_bgr, 2,
-             cv::LINE_AA);
+    cv::line(*picture, {best.x + 12, row - 5}, {best.x + 48, row - 5}, chart.series[i].color_bgr,
+             chart.series[i].thickness_px, cv::LINE_AA);
     DrawText(picture, chart.series[i].name, {best.x + 58, row});
   }
 }
@@ -187,7 +187,7 @@ void DrawChart(const Chart& chart, const cv::Rect& area_px, cv::Mat* picture) {
   for (const ChartSeries& series : chart.series) {
     std::vector<cv::Point> pixels;
     for (const cv::Point2d& point : series.points) pixels.push_back(frame.ToPixel(point));
-    cv::polylines(*picture, pixels, false, series.color_bgr, 2, cv::LINE_AA);
+    cv::polylines(*picture, pixels, false, series.color_bgr, series.thickness_px, cv::LINE_AA);
   }
   if (chart.series.size() > 1) DrawLegend(chart, frame, picture);
 }

@@ -11,6 +11,7 @@ namespace airdos {
 struct ChartSeries {
   std::string name;
   cv::Scalar color_bgr;
+  int thickness_px = 2;
   std::vector<cv::Point2d> points;  ///< in the units of the axes
 };
 

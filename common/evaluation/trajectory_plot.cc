@@ -11,7 +11,7 @@
 namespace airdos {
 namespace {
 
-const cv::Scalar kTruthColor(60, 60, 60);
+const cv::Scalar kTruthColor(170, 170, 170);
 const cv::Scalar kEstimateColor(200, 90, 0);
 const cv::Scalar kErrorColor(40, 40, 200);
 
@@ -32,9 +32,9 @@ PlaneFromAbove FindPlane(const std::vector<TrajectoryPose>& poses) {
   return axis_points_down ? PlaneFromAbove{after, next} : PlaneFromAbove{next, after};
 }
 
-ChartSeries SeriesFromAbove(const std::string& name, const cv::Scalar& color,
+ChartSeries SeriesFromAbove(const std::string& name, const cv::Scalar& color, int thickness_px,
                             const PlaneFromAbove& plane, const std::vector<TrajectoryPose>& poses) {
-  ChartSeries series = {name, color, {}};
+  ChartSeries series = {name, color, thickness_px, {}};
   for (const TrajectoryPose& pose : poses) {
     series.points.emplace_back(pose.position_m[plane.horizontal], pose.position_m[plane.vertical]);
   }
@@ -48,7 +48,7 @@ Chart ChartOverTime(const TrajectoryReport& report, const std::string& title,
   chart.x_label = report.has_times ? "time since the first pose (s)" : "row";
   chart.y_label = y_label;
   chart.y_starts_at_zero = true;
-  ChartSeries series = {"", kErrorColor, {}};
+  ChartSeries series = {"", kErrorColor, 1, {}};
   const std::vector<TrajectoryPose>& truth = report.aligned.ground_truth;
   const std::size_t offset = truth.size() - values.size();  // a motion is shown at its end
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -80,12 +80,13 @@ cv::Mat DrawEvaluation(const TrajectoryReport& report, const std::string& title)
   const PlaneFromAbove plane = FindPlane(report.aligned.ground_truth);
   Chart above;
   above.title = "from above, SE(3) aligned" + Number(", %.1f m", report.path_m) +
-                Number(", %.1f %% of the frames", 100 * report.completeness);
+                Number(", %.1f %% complete", 100 * report.completeness);
   above.x_label = std::string(1, kAxisNames[plane.horizontal]) + " (m)";
   above.y_label = std::string(1, kAxisNames[plane.vertical]) + " (m)";
   above.equal_scale = true;
-  above.series = {SeriesFromAbove("ground truth", kTruthColor, plane, report.aligned.ground_truth),
-                  SeriesFromAbove("estimate", kEstimateColor, plane, report.aligned.estimate)};
+  above.series = {
+      SeriesFromAbove("ground truth", kTruthColor, 6, plane, report.aligned.ground_truth),
+      SeriesFromAbove("estimate", kEstimateColor, 2, plane, report.aligned.estimate)};
   DrawChart(above, {0, kTitleHeight, kLeftWidth, kHeight - kTitleHeight}, &picture);
 
   DrawChart(ChartOverTime(report, "position error" + Number(", rmse %.4f m", report.ate_se3_m.rmse),

@@ -63,7 +63,7 @@ void AddTo(const map_update_t& part, MapCorrection* correction) {
 }  // namespace
 
 FrontendNode::FrontendNode(const FrontendOptions& options)
-    : FrameNode("airdos-frontend"), options_(options) {
+    : FrameNode("frontend"), options_(options) {
   Join<image_t>(channel::kCameraLeft, &FrontendInputs::left);
   Join<image_t>(channel::kCameraRight, &FrontendInputs::right);
   if (options_.use_masks) Join<person_mask_t>(channel::kPersonMask, &FrontendInputs::mask);

@@ -1,0 +1,213 @@
+#include "common/map/map_export.h"
+
+#include <cinttypes>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "common/human/skeleton.h"
+#include "common/map/byte_io.h"
+#include "common/util/error.h"
+
+namespace airdos {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file that is written from front to end; Close() throws InputError where any of it failed.
+class OutputFile {
+ public:
+  explicit OutputFile(const std::string& path) : path_(path), file_(path, std::ios::binary) {
+    if (!file_) throw InputError(path + ": cannot be created");
+  }
+  void Write(const std::string& text) { file_ << text; }
+  void Write(const std::vector<std::uint8_t>& bytes) {
+    file_.write(reinterpret_cast<const char*>(bytes.data()),
+                static_cast<std::streamsize>(bytes.size()));
+  }
+  void Close() {
+    file_.close();
+    if (!file_) throw InputError(path_ + ": cannot be written");
+  }
+
+ private:
+  std::string path_;
+  std::ofstream file_;
+};
+
+std::string KittiRow(const Se3& pose) {
+  const Eigen::Matrix4d m = pose.matrix();
+  std::string row;
+  char number[40];
+  for (int i = 0; i < 12; ++i) {
+    std::snprintf(number, sizeof number, "%s%.9e", i == 0 ? "" : " ", m(i / 4, i % 4));
+    row += number;
+  }
+  return row + "\n";
+}
+
+const char* NameOfAxes(std::int8_t axes) {
+  if (axes == 1) return "optical (x right, y down, z forward)";
+  if (axes == 2) return "NED (x forward, y right, z down)";
+  return "unknown";
+}
+
+void ExportTrajectories(const FourDMap& map, const std::string& folder,
+                        std::vector<std::string>* paths) {
+  const std::string names[] = {"trajectory.tum", "trajectory_live.tum", "trajectory.kitti"};
+  for (const std::string& name : names) paths->push_back(folder + "/" + name);
+  OutputFile refined(folder + "/" + names[0]);
+  OutputFile live(folder + "/" + names[1]);
+  OutputFile kitti(folder + "/" + names[2]);
+  bool has_ground_truth = false;
+  for (const auto& [id, frame] : map.frames) {
+    const std::optional<Se3> best = frame.best();
+    if (best) refined.Write(TumRow(frame.utime, *best));
+    if (best) kitti.Write(KittiRow(*best));
+    if (frame.live) live.Write(TumRow(frame.utime, *frame.live));
+    has_ground_truth |= frame.ground_truth.has_value();
+  }
+  refined.Close();
+  live.Close();
+  kitti.Close();
+  if (!has_ground_truth) return;
+  paths->push_back(folder + "/ground_truth.tum");
+  OutputFile truth(paths->back());
+  truth.Write(std::string("# axes: ") + NameOfAxes(map.ground_truth_axes) + "\n");
+  for (const auto& [id, frame] : map.frames) {
+    if (frame.ground_truth) truth.Write(TumRow(frame.utime, *frame.ground_truth));
+  }
+  truth.Close();
+}
+
+void ExportPly(const FourDMap& map, const std::string& path) {
+  OutputFile file(path);
+  file.Write(
+      "ply\nformat binary_little_endian 1.0\ncomment static landmarks in the world of the first "
+      "left camera, m\nelement vertex " +
+      std::to_string(map.landmarks.size()) +
+      "\nproperty float x\nproperty float y\nproperty float z\nproperty float sigma_m\n"
+      "property int num_observations\nend_header\n");
+  ByteWriter writer;
+  for (const auto& [id, landmark] : map.landmarks) {
+    for (int i = 0; i < 3; ++i) writer.F32(landmark.p_W[i]);
+    writer.F32(landmark.sigma_m);
+    writer.U32(static_cast<std::uint32_t>(landmark.num_observations));
+  }
+  file.Write(writer.bytes());
+  file.Close();
+}
+
+void ExportPeople(const FourDMap& map, const std::string& folder, std::vector<std::string>* paths) {
+  paths->push_back(folder + "/people.jsonl");
+  OutputFile lines(paths->back());
+  std::map<HumanId, std::string> tracks;
+  for (const auto& [key, human] : map.humans) {
+    lines.Write(HumanToJson(key.first, key.second, human) + "\n");
+    const std::optional<Se3> T_W_H = TorsoPose(human);
+    if (T_W_H) tracks[key.second] += TumRow(human.utime, *T_W_H);
+  }
+  lines.Close();
+  for (const auto& [id, rows] : tracks) {
+    paths->push_back(folder + "/people/" + std::to_string(id.value) + ".tum");
+    OutputFile file(paths->back());
+    file.Write(rows);
+    file.Close();
+  }
+}
+
+std::string JointsToJson(const MapHuman& human, Eigen::Vector3f MapJoint::*place) {
+  std::string text;
+  char entry[120];
+  for (const auto& [id, joint] : human.joints) {
+    const Eigen::Vector3f& p_W = joint.*place;
+    std::snprintf(entry, sizeof entry, "%s\"%d\": [%.4f, %.4f, %.4f]", text.empty() ? "" : ", ", id,
+                  static_cast<double>(p_W.x()), static_cast<double>(p_W.y()),
+                  static_cast<double>(p_W.z()));
+    text += entry;
+  }
+  return "{" + text + "}";
+}
+
+}  // namespace
+
+std::string TumRow(std::int64_t utime, const Se3& T_W_B) {
+  constexpr std::int64_t kUsPerS = 1000000;
+  const std::uint64_t magnitude =
+      utime < 0 ? 0 - static_cast<std::uint64_t>(utime) : static_cast<std::uint64_t>(utime);
+  const Eigen::Vector3d& p = T_W_B.translation;
+  const Eigen::Quaterniond& q = T_W_B.rotation;
+  char row[400];
+  std::snprintf(row, sizeof row,
+                "%s%" PRIu64 ".%06" PRIu64 " %.9f %.9f %.9f %.12f %.12f %.12f %.12f\n",
+                utime < 0 ? "-" : "", magnitude / kUsPerS, magnitude % kUsPerS, p.x(), p.y(), p.z(),
+                q.x(), q.y(), q.z(), q.w());
+  return row;
+}
+
+std::optional<Se3> TorsoPose(const MapHuman& human) {
+  const RigidPart& torso = kParts[kTorsoPart];
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0;
+  for (int i = 0; i < torso.num_joints; ++i) {
+    const auto joint = human.joints.find(torso.joints[static_cast<std::size_t>(i)]);
+    if (joint == human.joints.end()) continue;
+    sum += joint->second.p_W.cast<double>();
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  Se3 T_W_H;
+  T_W_H.translation = sum / count;
+  const auto neck = human.joints.find(kNeck);
+  const auto right = human.joints.find(kRightHip);
+  const auto left = human.joints.find(kLeftHip);
+  const auto end = human.joints.end();
+  if (neck == end || right == end || left == end) return T_W_H;
+
+  const Eigen::Vector3d p_right = right->second.p_W.cast<double>();
+  const Eigen::Vector3d p_left = left->second.p_W.cast<double>();
+  const Eigen::Vector3d p_neck = neck->second.p_W.cast<double>();
+  const Eigen::Vector3d p_hips = 0.5 * (p_right + p_left);
+  T_W_H.translation = 0.5 * (p_neck + p_hips);
+  const Eigen::Vector3d down = p_hips - p_neck;
+  const Eigen::Vector3d forward = (p_right - p_left).cross(down);
+  constexpr double kMinAreaM2 = 1e-4;  // hips 1 cm apart below a spine of 1 cm
+  if (!(forward.norm() > kMinAreaM2)) return T_W_H;
+  Eigen::Matrix3d R_W_H;
+  R_W_H.col(1) = down.normalized();
+  R_W_H.col(2) = forward.normalized();
+  R_W_H.col(0) = R_W_H.col(1).cross(R_W_H.col(2));
+  T_W_H.rotation = Eigen::Quaterniond(R_W_H).normalized();
+  return T_W_H;
+}
+
+std::string HumanToJson(FrameId frame, HumanId human, const MapHuman& state) {
+  std::string lengths;
+  char entry[60];
+  for (const auto& [id, length_m] : state.segment_lengths_m) {
+    std::snprintf(entry, sizeof entry, "%s\"%d\": %.4f", lengths.empty() ? "" : ", ", id,
+                  static_cast<double>(length_m));
+    lengths += entry;
+  }
+  return "{\"seq\": " + std::to_string(frame.value) +
+         ", \"utime\": " + std::to_string(state.utime) +
+         ", \"track\": " + std::to_string(human.value) +
+         ", \"joints\": " + JointsToJson(state, &MapJoint::p_W) +
+         ", \"measured\": " + JointsToJson(state, &MapJoint::p_W_measured) +
+         ", \"segment_lengths_m\": {" + lengths + "}}";
+}
+
+std::vector<std::string> ExportMap(const FourDMap& map, const std::string& folder) {
+  std::error_code error;
+  fs::remove_all(folder + "/people", error);  // tracks of an earlier export
+  fs::create_directories(folder + "/people", error);
+  if (error) throw InputError(folder + "/people: " + error.message());
+  std::vector<std::string> paths;
+  ExportTrajectories(map, folder, &paths);
+  paths.push_back(folder + "/map.ply");
+  ExportPly(map, paths.back());
+  ExportPeople(map, folder, &paths);
+  return paths;
+}
+
+}  // namespace airdos

@@ -1,0 +1,40 @@
+#ifndef AIRDOS_COMMON_MAP_MAP_EXPORT_H_
+#define AIRDOS_COMMON_MAP_MAP_EXPORT_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/geometry/se3.h"
+#include "common/map/four_d_map.h"
+
+namespace airdos {
+
+/// Writes everything below into a folder, which is made if it is not there:
+/// - trajectory.tum: T_W_C as `t x y z qx qy qz qw` (s, m), refined where there is a refined pose;
+/// - trajectory_live.tum: T_W_C as estimated when each frame was the newest;
+/// - trajectory.kitti: as trajectory.tum in rows of 3 x 4; frames without a pose have no row;
+/// - ground_truth.tum: if there is one; its axes are in the first line;
+/// - map.ply: static landmarks in W (m), binary little endian, with sigma_m and num_observations;
+/// - people.jsonl: one line per person and frame, in order of (frame, track);
+/// - people/<track>.tum: pose of each person's torso, see TorsoPose().
+///
+/// Returns the paths. Throws InputError naming the file that cannot be written.
+std::vector<std::string> ExportMap(const FourDMap& map, const std::string& folder);
+
+/// T_W_H of a person: position is the mean of the neck and the middle of the hips (of what is known
+/// of the torso's five joints where one of these lacks); axes x to the person's right, y down along
+/// the spine, z forward. The identity where the neck or a hip lacks or they lie on one line;
+/// nothing where no joint of the torso is known.
+std::optional<Se3> TorsoPose(const MapHuman& human);
+
+/// One line of people.jsonl, without the line's end: {"seq", "utime", "track", "joints": {id:
+/// [x, y, z]}, "measured": {…}, "segment_lengths_m": {number: length}}, joints in W (m).
+std::string HumanToJson(FrameId frame, HumanId human, const MapHuman& state);
+
+/// Text of a TUM row, s with six decimals.
+std::string TumRow(std::int64_t utime, const Se3& T_W_B);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_MAP_MAP_EXPORT_H_

@@ -1,0 +1,220 @@
+#include "processes/map_recorder/map_recorder_node.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include "common/map/map_export.h"
+#include "common/util/error.h"
+#include "common/util/version.h"
+
+namespace airdos {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kMapName[] = "/map.airdos";
+constexpr int kGroundTruthPerChunk = 10000;
+constexpr std::size_t kLargeChunkBytes = 8u << 20;  // then it does not wait for its last frame
+
+MapHuman ToMapHuman(const human_state_t& message) {
+  MapHuman human;
+  human.utime = message.utime;
+  for (std::size_t i = 0; i < message.joint_id.size(); ++i) {
+    MapJoint& joint = human.joints[message.joint_id[i]];
+    joint.p_W = {message.x_W_m[i], message.y_W_m[i], message.z_W_m[i]};
+    joint.p_W_measured = {message.x_W_measured_m[i], message.y_W_measured_m[i],
+                          message.z_W_measured_m[i]};
+  }
+  for (std::size_t i = 0; i < message.segment_id.size(); ++i) {
+    human.segment_lengths_m[message.segment_id[i]] = message.length_m[i];
+  }
+  for (std::size_t i = 0; i < message.part_id.size(); ++i) {
+    MapPartMotion& motion = human.part_motions[message.part_id[i]];
+    const auto& t = message.translation_m[i];
+    const auto& q = message.rotation[i];
+    motion.t_W = {t[0], t[1], t[2]};
+    motion.R_W = Eigen::Quaternionf(q[0], q[1], q[2], q[3]);
+  }
+  return human;
+}
+
+void AddUpdate(const map_update_t& message, MapChanges* changes) {
+  for (const frame_pose_t& pose : message.frames) {
+    MapFrame frame;
+    frame.utime = pose.utime;
+    frame.refined = ToSe3(pose.position_W_C, pose.orientation_W_C);
+    changes->SetFrame({pose.seq}, frame);
+  }
+  for (std::size_t i = 0; i < message.landmark_id.size(); ++i) {
+    MapLandmark landmark;
+    landmark.p_W =
+        Eigen::Vector3d(message.x_W_m[i], message.y_W_m[i], message.z_W_m[i]).cast<float>();
+    landmark.sigma_m = message.sigma_m[i];
+    landmark.num_observations = message.num_observations[i];
+    changes->SetLandmark({message.landmark_id[i]}, landmark);
+  }
+  for (const std::int64_t id : message.removed_landmark_id) changes->RemoveLandmark({id});
+  for (const human_state_t& human : message.humans) {
+    changes->SetHuman({human.seq}, {human.track_id}, ToMapHuman(human));
+  }
+}
+
+MapFrame ToMapFrame(const state_estimate_t& message) {
+  MapFrame frame;
+  frame.utime = message.utime;
+  frame.live = ToSe3(message.position_W_C, message.orientation_W_C);
+  frame.status = message.status;
+  frame.is_trusted_with_people = message.trusted == state_estimate_t::TRUSTED_WITH_PEOPLE;
+  return frame;
+}
+
+void MakeDirectory(const std::string& directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) throw InputError(directory + ": cannot be made: " + error.message());
+}
+
+/// A recording that was cut short must not be lost to the next one in the same place.
+void KeepUnfinishedMap(const std::string& path) {
+  if (!fs::exists(path)) return;
+  try {
+    MapFileSummary summary;
+    if (ReadFourDMap(path, &summary).is_closed) return;
+  } catch (const InputError&) {  // no map at all: keep it as well
+  }
+  for (int i = 1;; ++i) {
+    const std::string kept = path + ".unfinished_" + std::to_string(i);
+    if (fs::exists(kept)) continue;
+    std::error_code error;
+    fs::rename(path, kept, error);
+    if (error) throw InputError(path + ": cannot be renamed: " + error.message());
+    return;
+  }
+}
+
+}  // namespace
+
+MapRecorderNode::MapRecorderNode(const MapRecorderOptions& options)
+    : FrameNode("map_recorder"), options_(options) {
+  Join(channel::kStateEstimate, &MapRecorderInputs::state);
+  JoinParts(channel::kMapUpdate, &MapRecorderInputs::updates);
+  Subscribe<pose_t>(channel::kGroundTruth,
+                    [this](pose_t&& message) { return AddGroundTruth(message); });
+  Subscribe<stereo_calibration_t>(channel::kCalibration, [this](stereo_calibration_t&& message) {
+    std::map<std::int64_t, StereoCamera>& cameras = cameras_[message.session];
+    cameras[message.seq] = ToStereoCamera(message);
+    cameras.erase(std::next(cameras.begin()), cameras.end());  // the earliest is enough
+    return std::string();
+  });
+  MakeDirectory(options_.directory);
+  const std::string probe = options_.directory + "/.airdos_can_write";
+  { MapFileWriter writer(probe); }
+  fs::remove(probe);
+}
+
+MapRecorderNode::~MapRecorderNode() {
+  try {
+    Finish();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "map_recorder: %s\n", error.what());
+  }
+}
+
+void MapRecorderNode::Finish() {
+  if (file_ != nullptr) CloseSession();
+}
+
+void MapRecorderNode::StartSession(const Header& header) {
+  if (file_ != nullptr) CloseSession();
+  ++num_sessions_;
+  session_ = header.session;
+  session_directory_ = options_.directory;
+  if (num_sessions_ > 1) session_directory_ += "/session_" + std::to_string(num_sessions_);
+  MakeDirectory(session_directory_);
+  KeepUnfinishedMap(session_directory_ + kMapName);
+  file_ = std::make_unique<MapFileWriter>(session_directory_ + kMapName);
+  Append(HeadChunk(session_, std::string("airdos map_recorder ") + kVersion));
+}
+
+void MapRecorderNode::ProcessFrame(const Header& header, MapRecorderInputs inputs) {
+  if (file_ == nullptr) return;  // the disk failed
+  if (inputs.state) changes_.SetFrame({header.seq}, ToMapFrame(*inputs.state));
+  for (const map_update_t& update : inputs.updates) {
+    AddUpdate(update, &changes_);
+    if (changes_.ApproximateBytes() > kLargeChunkBytes) WriteChunk();
+  }
+  if (++num_frames_in_chunk_ >= options_.chunk_frames) WriteChunk();
+}
+
+std::string MapRecorderNode::AddGroundTruth(const pose_t& message) {
+  if (num_ground_truth_ >= kMaxGroundTruth) return "too many ground truth poses";
+  std::map<std::int64_t, GroundTruth>& poses = ground_truth_[message.session];
+  const GroundTruth truth = {message.axes, message.utime,
+                             ToSe3(message.position, message.orientation)};
+  if (!poses.emplace(message.seq, truth).second) {
+    ++counters(channel::kGroundTruth).num_duplicate;
+    return "";
+  }
+  ++num_ground_truth_;
+  return "";
+}
+
+void MapRecorderNode::Append(const MapChunk& chunk) {
+  try {
+    file_->Append(chunk);
+  } catch (const InputError&) {
+    file_.reset();  // said once: nothing more is written
+    throw;
+  }
+}
+
+void MapRecorderNode::WriteChunk() {
+  const MapChanges changes = std::exchange(changes_, MapChanges());
+  num_frames_in_chunk_ = 0;
+  if (!changes.empty()) Append(changes.ToChunk());
+}
+
+void MapRecorderNode::CloseSession() {
+  WriteChunk();
+  const std::map<std::int64_t, GroundTruth>& poses = ground_truth_[session_];
+  std::int8_t axes = pose_t::AXES_INVALID;
+  for (const auto& [seq, truth] : poses) {
+    MapFrame frame;
+    frame.utime = truth.utime;
+    frame.ground_truth = truth.pose;
+    axes = truth.axes;
+    changes_.SetFrame({seq}, frame);
+    if (++num_frames_in_chunk_ >= kGroundTruthPerChunk) WriteChunk();
+  }
+  WriteChunk();
+  num_ground_truth_ -= poses.size();
+  ground_truth_.erase(session_);
+  std::optional<StereoCamera> camera;
+  const auto cameras = cameras_.find(session_);
+  if (cameras != cameras_.end()) camera = cameras->second.begin()->second;
+  cameras_.erase(session_);
+  Append(EndChunk(camera, axes));
+  file_.reset();
+
+  std::ofstream config(session_directory_ + "/map_recorder.resolved.yaml");
+  config << options_.resolved_config;
+  if (!config.flush()) {
+    throw InputError(session_directory_ + "/map_recorder.resolved.yaml: cannot be written");
+  }
+  if (!options_.export_at_end) return;
+  MapFileSummary summary;
+  ExportMap(ReadFourDMap(session_directory_ + kMapName, &summary), session_directory_);
+}
+
+std::unique_ptr<Node> MakeMapRecorderNode(ConfigReader* config) {
+  MapRecorderOptions options;
+  config->Read("output.directory", &options.directory);
+  config->Read("output.chunk_frames", &options.chunk_frames, 1, 1000);
+  config->Read("output.export_at_end", &options.export_at_end);
+  options.resolved_config = config->Resolved();
+  return std::make_unique<MapRecorderNode>(options);
+}
+
+}  // namespace airdos

@@ -1,0 +1,93 @@
+#ifndef AIRDOS_PROCESSES_MAP_RECORDER_MAP_RECORDER_NODE_H_
+#define AIRDOS_PROCESSES_MAP_RECORDER_MAP_RECORDER_NODE_H_
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "airdos/map_update_t.hpp"
+#include "airdos/state_estimate_t.hpp"
+#include "common/config/config_reader.h"
+#include "common/map/four_d_map.h"
+#include "processes/node/frame_node.h"
+
+namespace airdos {
+
+struct MapRecorderOptions {
+  std::string directory = "airdos_map";  ///< made if it is not there
+  int chunk_frames = 10;                 ///< frames a chunk; a kill loses at most one chunk
+  bool export_at_end = true;             ///< also write the exports of common/map/map_export.h
+  std::string resolved_config;           ///< written beside the map
+};
+
+/// STATE_ESTIMATE and MAP_UPDATE of one frame.
+struct MapRecorderInputs {
+  std::optional<state_estimate_t> state;
+  std::vector<map_update_t> updates;
+};
+
+/// Writes what the optimizer says into a 4-D map, `<directory>/map.airdos`, chunk by chunk, and
+/// makes the exports from that file at the end. What the file holds depends on what each channel
+/// carried only, not on how they interleaved: frames are joined by number, and calibration and
+/// ground truth, which nothing waits for, go into the last chunks. It publishes nothing.
+///
+/// A second session goes to `<directory>/session_2`, and so on. A map that an earlier run did not
+/// close (a kill) is kept under another name, one that it did close is replaced.
+///
+/// Memory: the open chunk and the ground truth (at most kMaxGroundTruth poses).
+class MapRecorderNode : public FrameNode<MapRecorderInputs> {
+ public:
+  static constexpr std::size_t kMaxGroundTruth = 1000000;
+
+  /// Throws InputError where the directory cannot be made or written to.
+  explicit MapRecorderNode(const MapRecorderOptions& options);
+  /// Closes the map if Finish() was not called; a failure is then said on stderr.
+  ~MapRecorderNode() override;
+
+  /// Writes the last chunks and the exports. Nothing where no frame came. Throws InputError naming
+  /// the file that cannot be written.
+  void Finish();
+
+  /// Of the session in work; empty before the first frame.
+  const std::string& session_directory() const { return session_directory_; }
+
+ protected:
+  void StartSession(const Header& header) override;
+  /// Throws InputError once where the disk does not take the chunk; nothing is recorded from then
+  /// on, what was is kept.
+  void ProcessFrame(const Header& header, MapRecorderInputs inputs) override;
+
+ private:
+  std::string AddGroundTruth(const pose_t& message);
+  void Append(const MapChunk& chunk);
+  void WriteChunk();
+  void CloseSession();
+
+  MapRecorderOptions options_;
+  std::string session_directory_;
+  int num_sessions_ = 0;
+  std::int64_t session_ = 0;
+  std::unique_ptr<MapFileWriter> file_;  // none before the first frame and after a failure
+  MapChanges changes_;                   // of the open chunk
+  int num_frames_in_chunk_ = 0;
+
+  struct GroundTruth {
+    std::int8_t axes = 0;
+    std::int64_t utime = 0;
+    Se3 pose;
+  };
+  // By session, then image number.
+  std::map<std::int64_t, std::map<std::int64_t, GroundTruth>> ground_truth_;
+  std::map<std::int64_t, std::map<std::int64_t, StereoCamera>> cameras_;
+  std::size_t num_ground_truth_ = 0;
+};
+
+/// Reads launch_scripts/config/map_recorder.yaml's keys; the caller calls Finish() of the reader.
+std::unique_ptr<Node> MakeMapRecorderNode(ConfigReader* config);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_MAP_RECORDER_MAP_RECORDER_NODE_H_

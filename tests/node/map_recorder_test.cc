@@ -1,0 +1,301 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "common/util/error.h"
+#include "processes/map_recorder/map_recorder_node.h"
+
+namespace airdos {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kSession = 42;
+
+template <class Message>
+Message Make(std::int64_t seq, std::int64_t session = kSession) {
+  Message message = {};
+  message.utime = 1000000 + 100000 * seq;
+  message.seq = seq;
+  message.session = session;
+  return message;
+}
+
+void SetIdentity(double orientation[4]) {
+  orientation[0] = 1;
+  orientation[1] = orientation[2] = orientation[3] = 0;
+}
+
+Envelope State(std::int64_t seq, std::int64_t session = kSession) {
+  auto message = Make<state_estimate_t>(seq, session);
+  message.status = state_estimate_t::STATUS_CONVERGED;
+  message.trusted = state_estimate_t::TRUSTED_WITHOUT_PEOPLE;
+  message.position_W_C[0] = static_cast<double>(seq);
+  SetIdentity(message.orientation_W_C);
+  SetIdentity(message.orientation_without_people_W_C);
+  SetIdentity(message.orientation_with_people_W_C);
+  return {channel::kStateEstimate, Encode(message)};
+}
+
+/// Moves the frame before by 0.25 m, has landmark `seq` and moves landmark 0, removes landmark
+/// `seq` - 5, and sees person 3.
+Envelope Update(std::int64_t seq, int part = 0, int num_parts = 1,
+                std::int64_t session = kSession) {
+  auto message = Make<map_update_t>(seq, session);
+  message.part = part;
+  message.num_parts = num_parts;
+  if (seq > 0) {
+    frame_pose_t pose = {};
+    pose.seq = seq - 1;
+    pose.utime = message.utime - 100000;
+    pose.position_W_C[0] = static_cast<double>(seq) - 0.75 + part;
+    SetIdentity(pose.orientation_W_C);
+    message.frames.push_back(pose);
+  }
+  message.num_frames = static_cast<std::int32_t>(message.frames.size());
+  message.landmark_id = {0, seq};
+  message.x_W_m = {static_cast<double>(seq), 10.0 + static_cast<double>(seq)};
+  message.y_W_m = {0, 1};
+  message.z_W_m = {5, 6};
+  message.sigma_m = {0.1f, 0.2f};
+  message.num_observations = {static_cast<int>(seq) + 1, 1};
+  message.num_landmarks = 2;
+  if (seq >= 5) message.removed_landmark_id = {seq - 4};
+  message.num_removed = static_cast<std::int32_t>(message.removed_landmark_id.size());
+  human_state_t human = {};
+  human.track_id = 3;
+  human.seq = seq;
+  human.utime = message.utime;
+  human.joint_id = {1, 8, 11};
+  human.x_W_m = {0, 0.1f, -0.1f};
+  human.y_W_m = {0, 0.5f, 0.5f};
+  human.z_W_m = {4, 4, 4};
+  human.x_W_measured_m = human.y_W_measured_m = human.z_W_measured_m = {0, 0, 0};
+  human.num_joints = 3;
+  human.segment_id = {4};
+  human.length_m = {0.2f};
+  human.num_segments = 1;
+  message.humans = {human};
+  message.num_humans = 1;
+  return {channel::kMapUpdate, Encode(message)};
+}
+
+Envelope Truth(std::int64_t seq, std::int64_t session = kSession) {
+  auto message = Make<pose_t>(seq, session);
+  message.axes = pose_t::AXES_NED;
+  message.position[1] = static_cast<double>(seq);
+  SetIdentity(message.orientation);
+  return {channel::kGroundTruth, Encode(message)};
+}
+
+Envelope Calibration(std::int64_t seq) {
+  auto message = Make<stereo_calibration_t>(seq);
+  message.width = 640;
+  message.height = 360;
+  message.fx_px = message.fy_px = 700;
+  message.cx_px = 320;
+  message.cy_px = 180;
+  message.baseline_m = 0.25;
+  return {channel::kCalibration, Encode(message)};
+}
+
+std::string BytesOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+class MapRecorderTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = (fs::temp_directory_path() / ("airdos_map_recorder_test_" + std::to_string(getpid())))
+                  .string();
+    fs::remove_all(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  MapRecorderOptions Options(const std::string& name) const {
+    MapRecorderOptions options;
+    options.directory = folder_ + "/" + name;
+    options.chunk_frames = 4;
+    return options;
+  }
+  static void Feed(const std::vector<Envelope>& messages, Node* node) {
+    for (const Envelope& message : messages) {
+      node->Receive(message.channel, message.payload.data(), message.payload.size());
+      while (node->Step()) {
+      }
+    }
+  }
+  static void CompleteAll(Node* node) {
+    while (node->CompleteOldest()) {
+    }
+  }
+  static FourDMap Read(const std::string& directory) {
+    MapFileSummary summary;
+    return ReadFourDMap(directory + "/map.airdos", &summary);
+  }
+  std::string folder_;
+};
+
+std::vector<Envelope> Recording(int num_frames) {
+  std::vector<Envelope> messages = {Calibration(0)};
+  for (int seq = 0; seq < num_frames; ++seq) {
+    messages.push_back(Truth(seq));
+    messages.push_back(State(seq));
+    messages.push_back(Update(seq));
+  }
+  return messages;
+}
+
+TEST_F(MapRecorderTest, RecordsWhatTheOptimizerSays) {
+  const MapRecorderOptions options = Options("a");
+  MapRecorderNode node(options);
+  Feed(Recording(10), &node);
+  EXPECT_EQ(node.frames().num_done, 10);
+  EXPECT_EQ(node.frames().num_incomplete, 0);
+  node.Finish();
+  EXPECT_TRUE(node.TakeOutput().empty());
+
+  const FourDMap map = Read(options.directory);
+  EXPECT_TRUE(map.is_closed);
+  EXPECT_EQ(map.session, kSession);
+  EXPECT_EQ(map.camera->fx_px, 700);
+  EXPECT_EQ(map.ground_truth_axes, static_cast<int>(pose_t::AXES_NED));
+  ASSERT_EQ(map.frames.size(), 10u);
+  for (const auto& [id, frame] : map.frames) {
+    EXPECT_EQ(frame.utime, 1000000 + 100000 * id.value);
+    EXPECT_EQ(frame.live->translation.x(), static_cast<double>(id.value));
+    EXPECT_EQ(frame.ground_truth->translation.y(), static_cast<double>(id.value));
+    EXPECT_EQ(frame.refined.has_value(), id.value < 9);
+    if (frame.refined) {
+      EXPECT_EQ(frame.refined->translation.x(), static_cast<double>(id.value) + 0.25);
+    }
+  }
+  std::vector<std::int64_t> ids;
+  for (const auto& [id, landmark] : map.landmarks) ids.push_back(id.value);
+  EXPECT_EQ(ids, (std::vector<std::int64_t>{0, 6, 7, 8, 9}));
+  EXPECT_EQ(map.landmarks.at({0}).p_W.x(), 9);
+  EXPECT_EQ(map.landmarks.at({0}).num_observations, 10);
+  EXPECT_EQ(map.landmarks.at({9}).p_W, Eigen::Vector3f(19, 1, 6));
+  EXPECT_EQ(map.humans.size(), 10u);
+  EXPECT_EQ(map.humans.at({{7}, {3}}).joints.at(8).p_W, Eigen::Vector3f(0.1f, 0.5f, 4));
+  for (const char* name :
+       {"trajectory.tum", "trajectory_live.tum", "trajectory.kitti", "map.ply", "people.jsonl",
+        "people/3.tum", "ground_truth.tum", "map_recorder.resolved.yaml"}) {
+    EXPECT_TRUE(fs::exists(options.directory + "/" + name)) << name;
+  }
+}
+
+TEST_F(MapRecorderTest, TheFileDoesNotDependOnHowChannelsInterleave) {
+  {
+    MapRecorderNode node(Options("a"));
+    Feed(Recording(10), &node);
+  }
+  std::vector<Envelope> by_channel = Recording(10);
+  std::stable_sort(by_channel.begin(), by_channel.end(),
+                   [](const Envelope& a, const Envelope& b) { return a.channel > b.channel; });
+  {
+    MapRecorderNode node(Options("b"));
+    Feed(by_channel, &node);
+  }
+  const std::string a = BytesOf(folder_ + "/a/map.airdos");
+  EXPECT_FALSE(a.empty());
+  EXPECT_EQ(a, BytesOf(folder_ + "/b/map.airdos"));
+}
+
+TEST_F(MapRecorderTest, PartsOfAnUpdateAreTakenInOrder) {
+  MapRecorderNode node(Options("a"));
+  Feed({State(0), Update(0), State(1), Update(1, 1, 2)}, &node);
+  EXPECT_EQ(node.frames().num_done, 1);
+  Feed({Update(1, 0, 2)}, &node);
+  EXPECT_EQ(node.frames().num_done, 2);
+  node.Finish();
+  EXPECT_EQ(Read(folder_ + "/a").frames.at({0}).refined->translation.x(), 1.25);  // of part 1
+}
+
+TEST_F(MapRecorderTest, WhatAKillLeavesIsReadable) {
+  MapRecorderNode node(Options("a"));
+  Feed(Recording(10), &node);
+  const FourDMap map = Read(folder_ + "/a");  // the node still runs: as after a kill
+  EXPECT_FALSE(map.is_closed);
+  EXPECT_EQ(map.frames.size(), 8u);  // two chunks of four
+  EXPECT_EQ(map.humans.size(), 8u);
+}
+
+TEST_F(MapRecorderTest, KeepsAMapThatWasNotClosed) {
+  {
+    MapRecorderNode node(Options("a"));
+    Feed(Recording(10), &node);
+    fs::copy(folder_ + "/a/map.airdos", folder_ + "/killed");
+  }
+  fs::rename(folder_ + "/killed", folder_ + "/a/map.airdos");
+  for (int run = 0; run < 2; ++run) {  // the second finds a closed map and replaces it
+    MapRecorderNode node(Options("a"));
+    Feed(Recording(3), &node);
+  }
+  EXPECT_EQ(Read(folder_ + "/a").frames.size(), 3u);
+  MapFileSummary summary;
+  EXPECT_EQ(ReadFourDMap(folder_ + "/a/map.airdos.unfinished_1", &summary).frames.size(), 8u);
+  EXPECT_FALSE(fs::exists(folder_ + "/a/map.airdos.unfinished_2"));
+}
+
+TEST_F(MapRecorderTest, AnotherSessionGoesToItsOwnFolder) {
+  {
+    MapRecorderNode node(Options("a"));
+    Feed(Recording(3), &node);
+    Feed({State(0, 43), Update(0, 0, 1, 43), Truth(0, 43)}, &node);
+    CompleteAll(&node);
+  }
+  EXPECT_EQ(Read(folder_ + "/a").session, kSession);
+  EXPECT_EQ(Read(folder_ + "/a").frames.size(), 3u);
+  const FourDMap second = Read(folder_ + "/a/session_2");
+  EXPECT_EQ(second.session, 43);
+  EXPECT_EQ(second.frames.size(), 1u);
+  EXPECT_TRUE(second.frames.at({0}).ground_truth);
+}
+
+TEST_F(MapRecorderTest, AFrameWithoutItsUpdateIsKept) {
+  {
+    MapRecorderNode node(Options("a"));
+    Feed({State(0), State(1)}, &node);
+    CompleteAll(&node);
+    EXPECT_EQ(node.frames().num_incomplete, 2);
+  }
+  EXPECT_EQ(Read(folder_ + "/a").frames.size(), 2u);
+}
+
+TEST_F(MapRecorderTest, BadBytesAreCounted) {
+  MapRecorderNode node(Options("a"));
+  Envelope broken = State(0);
+  broken.payload.resize(30);
+  Feed({broken}, &node);
+  EXPECT_EQ(node.channels().at(channel::kStateEstimate).num_rejected, 1);
+  node.Finish();
+  EXPECT_FALSE(fs::exists(folder_ + "/a/map.airdos"));
+}
+
+TEST_F(MapRecorderTest, SaysThatTheFolderCannotBeMade) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ + "/file") << "";
+  EXPECT_THROW(MapRecorderNode(Options("file")), InputError);
+  EXPECT_THROW(MapRecorderNode(Options("file/below")), InputError);
+}
+
+TEST_F(MapRecorderTest, ReadsItsConfiguration) {
+  ConfigReader config =
+      ConfigReader::FromFile(AIRDOS_SOURCE_DIR "/launch_scripts/config/map_recorder.yaml");
+  config.Override("output.directory=" + folder_ + "/a");
+  const std::unique_ptr<Node> node = MakeMapRecorderNode(&config);
+  config.Finish();
+  Feed(Recording(3), node.get());
+  dynamic_cast<MapRecorderNode&>(*node).Finish();
+  EXPECT_NE(BytesOf(folder_ + "/a/map_recorder.resolved.yaml").find("output.chunk_frames: 10"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace airdos
