@@ -194,6 +194,8 @@ fi
 if [[ -n $data ]]; then
   start player "$AIRDOS_BIN/airdos-stereo-player" --data "$data" "${arguments[@]}"
 elif [[ -n $log ]]; then
+  # lcm-logplayer waits for nobody and says nothing twice, so leave the receivers' threads a moment to come up.
+  sleep 1
   start player lcm-logplayer -s "$speed" -e "$AIRDOS_CAMERA_CHANNELS" -l "$url" "$log"
 fi
 while [[ $stopping == no ]]; do

@@ -9,6 +9,7 @@ import java.awt.Color;
 import java.awt.Graphics2D;
 import java.awt.image.BufferedImage;
 import java.util.Arrays;
+import java.util.List;
 import java.util.TreeSet;
 import lcm.lcm.LCMDataInputStream;
 import lcm.spy.SpyPlugin;
@@ -30,6 +31,7 @@ final class SpyRendererTest {
   public static void main(String[] args) throws Exception {
     pluginsAreDiscoveredAsTheSpyDoesIt();
     featuresAndPeopleAreDrawnWhereTheyWereSeen();
+    segmentsAreThoseOfTheChannelTable();
     allLayoutsGiveTheSameJoints();
     imagesOfEveryEncodingAreShown();
     framesAreJoinedByImageNumber();
@@ -117,6 +119,25 @@ final class SpyRendererTest {
     String summary = FrameRenderer.summary(new Frame(image, people, humans, features));
     check(summary.equals("seq 4   t 0.400 s   camera TRACKING   features 60   "
         + "people detected 2, tracked 1"), "summary: " + summary);
+  }
+
+  /** Against lcmtypes/README.md, by the names there. */
+  private static void segmentsAreThoseOfTheChannelTable() {
+    List<String> joints = Arrays.asList("nose", "neck",
+        "right shoulder", "right elbow", "right wrist", "left shoulder", "left elbow", "left wrist",
+        "right hip", "right knee", "right ankle", "left hip", "left knee", "left ankle");
+    String[][] table = {
+      {"neck", "right shoulder"}, {"neck", "left shoulder"}, {"right shoulder", "right hip"},
+      {"left shoulder", "left hip"}, {"right hip", "left hip"}, {"right shoulder", "right elbow"},
+      {"right elbow", "right wrist"}, {"left shoulder", "left elbow"}, {"left elbow", "left wrist"},
+      {"right hip", "right knee"}, {"right knee", "right ankle"}, {"left hip", "left knee"},
+      {"left knee", "left ankle"}, {"neck", "nose"}
+    };
+    check(Skeleton.SEGMENTS.length == table.length, "14 segments");
+    for (int i = 0; i < table.length; ++i) {
+      int[] expected = {joints.indexOf(table[i][0]), joints.indexOf(table[i][1])};
+      check(Arrays.equals(Skeleton.SEGMENTS[i], expected), "segment " + i);
+    }
   }
 
   private static void allLayoutsGiveTheSameJoints() {
