@@ -24,10 +24,10 @@ Similarity ComputeAlignment(const MatchedTrajectories& matched, Alignment alignm
   const Eigen::Matrix3Xd estimate = Positions(matched.estimate);
   const Eigen::Vector3d mean = estimate.rowwise().mean();
   const bool moves = (estimate.colwise() - mean).squaredNorm() > 0;
-  const Eigen::Matrix4d T = Eigen::umeyama(estimate, Positions(matched.ground_truth),
-                                           alignment == Alignment::kSim3 && moves);
+  const bool with_scale = alignment == Alignment::kSim3 && moves;
+  const Eigen::Matrix4d T = Eigen::umeyama(estimate, Positions(matched.ground_truth), with_scale);
   const Eigen::Matrix3d scaled_rotation = T.topLeftCorner<3, 3>();
-  similarity.scale = scaled_rotation.col(0).norm();
+  if (with_scale) similarity.scale = scaled_rotation.col(0).norm();
   if (similarity.scale > 0) similarity.rotation = scaled_rotation / similarity.scale;
   similarity.translation_m = T.topRightCorner<3, 1>();
   return similarity;

@@ -41,6 +41,10 @@ FrameJoiner::Arrival FrameJoiner::Announce(int input, const Header& header, Key*
 
   // Not "is the frame done": that would depend on how far the other channels are.
   if (IsOvertaken(slot, *key)) return Arrival::kLate;
+  if (newest_[slot] && newest_[slot]->session_rank == key->session_rank &&
+      key->seq > newest_[slot]->seq + kMaxAhead) {
+    return Arrival::kTooFar;
+  }
   if (!newest_[slot] || *newest_[slot] < *key) newest_[slot] = *key;
   // Only after a deadline passed can a frame be done that was not overtaken.
   if (last_done_ && !(*last_done_ < *key)) return Arrival::kLate;

@@ -30,7 +30,13 @@ class FrameJoiner {
       return a.session_rank != b.session_rank ? a.session_rank < b.session_rank : a.seq < b.seq;
     }
   };
-  enum class Arrival { kNew, kDuplicate, kLate };
+  enum class Arrival {
+    kNew,
+    kDuplicate,
+    kLate,
+    kTooFar,  ///< more than kMaxAhead beyond its channel: nonsense, or all that follows were late
+  };
+  static constexpr std::int64_t kMaxAhead = 1000000;
   struct Frame {
     Key key;
     Header header;

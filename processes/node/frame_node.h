@@ -86,9 +86,8 @@ class FrameNode : public Node {
   void Join(const std::string& channel, std::optional<Message> Inputs::*field) {
     const int input = AddInput(channel);
     Subscribe<Message>(channel, [this, input, channel, field](Message&& message) {
-      Arrived(input, channel, HeaderOf(message),
-              [&](Inputs& inputs) { inputs.*field = std::move(message); });
-      return std::string();
+      return Arrived(input, channel, HeaderOf(message),
+                     [&](Inputs& inputs) { inputs.*field = std::move(message); });
     });
   }
 
@@ -102,10 +101,8 @@ class FrameNode : public Node {
     Subscribe<Message>(channel, [this, input, channel, field, set](Message&& message) {
       const Header header = HeaderOf(message);
       FrameJoiner::Key key;
-      if (Joiner().Announce(input, header, &key) != FrameJoiner::Arrival::kNew) {
-        ++counters(channel).num_duplicate;
-        return std::string();
-      }
+      const FrameJoiner::Arrival arrival = Joiner().Announce(input, header, &key);
+      if (arrival != FrameJoiner::Arrival::kNew) return Refused(arrival, channel, header);
       if (set->parts.empty() || set->key < key || key < set->key) *set = {key, {}};
       return AddPart(std::move(message), set.get(), [&](std::vector<Message>&& parts) {
         Arrived(input, channel, header, [&](Inputs& inputs) { inputs.*field = std::move(parts); });
@@ -177,13 +174,21 @@ class FrameNode : public Node {
   }
 
   template <class Fill>
-  void Arrived(int input, const std::string& channel, const Header& header, Fill fill) {
+  std::string Arrived(int input, const std::string& channel, const Header& header, Fill fill) {
     FrameJoiner::Key key;
-    if (Joiner().Add(input, header, &key) == FrameJoiner::Arrival::kNew) {
-      fill(inputs_[key]);
-    } else {
-      ++counters(channel).num_duplicate;
+    const FrameJoiner::Arrival arrival = Joiner().Add(input, header, &key);
+    if (arrival != FrameJoiner::Arrival::kNew) return Refused(arrival, channel, header);
+    fill(inputs_[key]);
+    return "";
+  }
+
+  std::string Refused(FrameJoiner::Arrival arrival, const std::string& channel,
+                      const Header& header) {
+    if (arrival == FrameJoiner::Arrival::kTooFar) {
+      return "seq " + std::to_string(header.seq) + " is far beyond the one before";
     }
+    ++counters(channel).num_duplicate;
+    return "";
   }
 
   bool HasCalibration(const Header& header) const {

@@ -1,7 +1,6 @@
 #include "processes/node/process_main.h"
 
 #include <iostream>
-#include <map>
 #include <opencv2/core/utility.hpp>
 
 #include "common/util/version.h"
@@ -40,17 +39,17 @@ int RunNodeProcess(int argc, char** argv, const ProcessInfo& info) {
   CommonArguments arguments;
   AddCommonOptions(info.config_name, &app, &arguments);
   LcmRunnerOptions options;
-  app.add_option("--pace", options.pace,
-                 "lockstep: every frame is worked on; realtime: the newest one")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Pace>{
-          {"lockstep", Pace::kLockstep}, {"realtime", Pace::kRealtime}}))
-      ->default_str("lockstep");
+  std::string pace = "lockstep";
+  app.add_option("--pace", pace, "lockstep: every frame is worked on; realtime: the newest one")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"lockstep", "realtime"}));
   CLI::Option* deadline =
       app.add_option("--deadline-s", options.deadline_s,
                      "A frame that lacks inputs for longer is completed without (s); default " +
                          std::string("5 in lockstep, 0.2 in realtime"))
           ->check(CLI::Range(1e-3, 1e6));
   return RunProgram(argc, argv, &app, [&] {
+    options.pace = pace == "lockstep" ? Pace::kLockstep : Pace::kRealtime;
     if (deadline->count() == 0) {
       options.deadline_s =
           options.pace == Pace::kLockstep ? kLockstepDeadline_s : kRealtimeDeadline_s;

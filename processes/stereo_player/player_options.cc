@@ -1,6 +1,5 @@
 #include "processes/stereo_player/player_options.h"
 
-#include <map>
 #include <sstream>
 #include <vector>
 
@@ -36,11 +35,9 @@ std::vector<int> ToQualities(const std::string& text) {
 }  // namespace
 
 PlayerArguments::PlayerArguments(CLI::App* app) {
-  using Encoding = ImagePackerOptions::Encoding;
   AddCommonOptions("stereo_player", app, &common_);
   app->add_option("--data", options_.data,
-                  "Folder (TartanAir-Shibuya or KITTI odometry layout) or LCM log")
-      ->required();
+                  "Folder (TartanAir-Shibuya or KITTI odometry layout) or LCM log");
   app->add_option("--first", options_.first, "First frame")->check(CLI::NonNegativeNumber);
   app->add_option("--last", options_.last, "Last frame, included")->check(CLI::NonNegativeNumber);
   app->add_option("--session", options_.session,
@@ -48,10 +45,9 @@ PlayerArguments::PlayerArguments(CLI::App* app) {
   app->add_option("--loop", options_.num_loops, "How often to play, each a session; 0: for ever")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  app->add_option("--pace", options_.pace, "lockstep: nothing is ever lost; realtime: like cameras")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, PlayerPace>{
-          {"lockstep", PlayerPace::kLockstep}, {"realtime", PlayerPace::kRealtime}}))
-      ->default_str("lockstep");
+  app->add_option("--pace", pace_, "lockstep: nothing is ever lost; realtime: like cameras")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"lockstep", "realtime"}));
   app->add_option("--rate", options_.rate, "realtime: speed relative to the recording")
       ->capture_default_str()
       ->check(CLI::Range(1e-3, 1e3));
@@ -59,17 +55,22 @@ PlayerArguments::PlayerArguments(CLI::App* app) {
                   "Processes that must be READY and keep up, separated by commas; none: nobody");
   app->add_option("--frames-in-flight", frames_in_flight_, "lockstep: frames on their way at once")
       ->check(CLI::Range(1, 1000));
-  app->add_option("--image-encoding", options_.image.encoding,
+  app->add_option("--image-encoding", encoding_,
                   "auto: files that fit unchanged, else JPEG; png: lossless, whatever the size")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Encoding>{
-          {"auto", Encoding::kAuto}, {"jpeg", Encoding::kJpeg}, {"png", Encoding::kPng}}))
-      ->default_str("auto");
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "jpeg", "png"}));
   app->add_option("--write-log", options_.write_log,
                   "Write an LCM log of exactly these messages instead of publishing them");
 }
 
 PlayerOptions PlayerArguments::Resolve() const {
+  using Encoding = ImagePackerOptions::Encoding;
   PlayerOptions options = options_;
+  if (options.data.empty()) throw InputError("--data FOLDER or LOG is missing");
+  options.pace = pace_ == "lockstep" ? PlayerPace::kLockstep : PlayerPace::kRealtime;
+  options.image.encoding = encoding_ == "auto"   ? Encoding::kAuto
+                           : encoding_ == "jpeg" ? Encoding::kJpeg
+                                                 : Encoding::kPng;
   ConfigReader config = ReadConfig(common_);
   std::string wait_for, qualities;
   config.Read("lockstep.wait_for", &wait_for);

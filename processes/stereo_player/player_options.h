@@ -39,6 +39,8 @@ class PlayerArguments {
  private:
   CommonArguments common_;
   PlayerOptions options_;
+  std::string pace_ = "lockstep";
+  std::string encoding_ = "auto";
   std::optional<std::string> wait_for_;
   std::optional<int> frames_in_flight_;
 };

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -233,6 +234,27 @@ TEST_F(MapTest, DoesNotBelieveLengths) {
   MapFileSummary read;
   EXPECT_EQ(ReadFourDMap(path_, &read).session, 1);
   EXPECT_NE(read.drop_reason.find("makes no sense"), std::string::npos);
+}
+
+TEST_F(MapTest, AKillLosesNothingThatWasAppended) {
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    MapFileWriter writer(path_);
+    writer.Append(HeadChunk(5, "killed"));
+    MapChanges changes;
+    changes.SetFrame({1}, LiveFrame(1, 1));
+    writer.Append(changes.ToChunk());
+    kill(getpid(), SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status));
+  MapFileSummary summary;
+  const FourDMap map = ReadFourDMap(path_, &summary);
+  EXPECT_EQ(summary.drop_reason, "");
+  EXPECT_FALSE(map.is_closed);
+  EXPECT_EQ(map.frames.size(), 1u);
 }
 
 TEST_F(MapTest, NamesWhatIsNoMap) {

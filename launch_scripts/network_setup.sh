@@ -1,0 +1,75 @@
+#!/bin/bash
+# Sets this machine up for LCM's multicast, or only checks it.
+#
+#   network_setup.sh                 loopback only: all processes on this machine
+#   network_setup.sh --interface IF  multicast through network interface IF, to spread processes over hosts (use ?ttl=1 in --lcm-url)
+#   network_setup.sh --check         changes nothing
+#
+# Three things: the interface is up and has its multicast flag, 224.0.0.0/4 has a route through it, and sockets may ask for a
+# receive buffer of 4 MiB (net.core.rmem_max), which lossless images need. Exit code 0: all is well (the buffer only warns);
+# 1: something is missing and was not or could not be mended; 2: wrong arguments. Nothing outlives a reboot.
+set -u
+
+readonly WANTED_RMEM_BYTES=4194304
+interface=lo
+check_only=false
+
+usage() { sed -n '2,/^set -u/{/^#/s/^# \{0,1\}//p}' "$0"; }
+
+while [ $# -gt 0 ]; do
+  case $1 in
+    --check) check_only=true ;;
+    --interface)
+      [ $# -ge 2 ] || { echo "network_setup.sh: --interface needs a name" >&2; exit 2; }
+      interface=$2
+      shift ;;
+    -h|--help) usage; exit 0 ;;
+    *) echo "network_setup.sh: unknown argument '$1'" >&2; exit 2 ;;
+  esac
+  shift
+done
+
+command -v ip >/dev/null || { echo "network_setup.sh: the program 'ip' is missing (package iproute2)" >&2; exit 1; }
+ip link show dev "$interface" >/dev/null 2>&1 ||
+  { echo "network_setup.sh: there is no network interface '$interface'" >&2; exit 2; }
+
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
+}
+
+has_flag() { ip link show dev "$interface" | head -n 1 | grep -q "[<,]$1[,>]"; }
+is_up() { has_flag UP; }
+is_multicast() { has_flag MULTICAST; }
+has_route() { ip -4 route show exact 224.0.0.0/4 | grep -q "dev $interface\b"; }
+has_other_route() { ip -4 route show exact 224.0.0.0/4 | grep -qv "dev $interface\b"; }
+rmem_bytes() { cat /proc/sys/net/core/rmem_max 2>/dev/null || echo 0; }
+has_buffer() { [ "$(rmem_bytes)" -ge "$WANTED_RMEM_BYTES" ]; }
+
+missing=0
+# require TEST WHAT COMMAND...: runs the command if the test fails, and tests again
+require() {
+  local test=$1 what=$2
+  shift 2
+  if "$test"; then echo "ok       $what"; return; fi
+  if ! $check_only && as_root "$@" && "$test"; then echo "set      $what"; return; fi
+  echo "MISSING  $what    (mend with: sudo $*)"
+  missing=1
+}
+
+require is_up "interface $interface is up" ip link set dev "$interface" up
+require is_multicast "interface $interface has its multicast flag" ip link set dev "$interface" multicast on
+if has_other_route; then
+  # Two routes for one address: which one wins is not what anybody wants to find out.
+  echo "note     another route for 224.0.0.0/4: $(ip -4 route show exact 224.0.0.0/4 | grep -v "dev $interface\b" | head -n 1)"
+fi
+require has_route "multicast route 224.0.0.0/4 through $interface" ip route replace 224.0.0.0/4 dev "$interface"
+
+if has_buffer; then
+  echo "ok       sockets may have a receive buffer of $WANTED_RMEM_BYTES bytes"
+elif ! $check_only && as_root sysctl -q -w net.core.rmem_max=$WANTED_RMEM_BYTES 2>/dev/null && has_buffer; then
+  echo "set      sockets may have a receive buffer of $WANTED_RMEM_BYTES bytes"
+else
+  echo "warning  receive buffers end at $(rmem_bytes) bytes: images above 120 kB may be lost" \
+       "(mend with: sudo sysctl -w net.core.rmem_max=$WANTED_RMEM_BYTES)"
+fi
+exit $missing

@@ -1,0 +1,24 @@
+#include "tests/support/allocation_watch.h"
+
+#include <cstdlib>
+#include <new>
+
+namespace {
+std::size_t largest_allocation = 0;
+}  // namespace
+
+void* operator new(std::size_t size) {
+  if (size > largest_allocation) largest_allocation = size;
+  void* const memory = std::malloc(size);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace airdos {
+
+void ResetLargestAllocation() { largest_allocation = 0; }
+std::size_t LargestAllocation() { return largest_allocation; }
+
+}  // namespace airdos
