@@ -9,6 +9,7 @@
 namespace airdos {
 namespace {
 
+constexpr double kLimbMotion = 0.02;    // unforeseen motion of a joint, of the height, a frame
 constexpr double kMaxSquaredError = 9;  // of one joint in the verdict on sides
 constexpr std::size_t kMinJoints = 3;   // on which a distance between two people rests
 constexpr int kMaxMissedForSwap = 2;    // limbs move on: later the sides cannot be told apart
@@ -89,8 +90,12 @@ std::optional<double> HumanTrack::Cost(const PersonDetection& detection) const {
   if (!distance_px) return std::nullopt;
   const double motion = *distance_px / height_px_;
   if (motion > options_.max_motion + options_.max_motion_growth * num_missed_) return std::nullopt;
-  double cost =
-      std::pow(motion / (options_.motion_sigma + options_.motion_sigma_growth * num_missed_), 2);
+  const double sigma = options_.motion_sigma + options_.motion_sigma_growth * num_missed_;
+  return std::pow(motion / sigma, 2) + LooksCost(detection);
+}
+
+double HumanTrack::LooksCost(const PersonDetection& detection) const {
+  double cost = 0;
   if (detection.disparity_px) {
     const double depth_sigma = options_.depth_sigma + options_.depth_sigma_growth * num_missed_;
     const double measured_sigma = std::sqrt(2.0) * options_.disparity_sigma_px /
@@ -102,39 +107,38 @@ std::optional<double> HumanTrack::Cost(const PersonDetection& detection) const {
   if (has_appearance_ && detection.appearance) {
     appearance = AppearanceDistance(appearance_, *detection.appearance);
   }
-  cost += appearance ? std::pow(*appearance / options_.appearance_sigma, 2)
-                     : options_.unknown_appearance_cost;
-  return cost;
+  return cost + (appearance ? std::pow(*appearance / options_.appearance_sigma, 2)
+                            : options_.unknown_appearance_cost);
 }
 
-SideSwap HumanTrack::FindSwap(const BodyKeypoints& left) {
-  SideSwap best = SideSwap::kNone;
-  if (num_missed_ <= kMaxMissedForSwap) {
-    double best_error = 0;
-    for (const SideSwap swap : kSideSwaps) {
-      const BodyKeypoints swapped = SwapSides(left, swap);
-      double error = 0;
-      for (std::size_t joint = 0; joint < left_.size(); ++joint) {
-        const double confidence = std::min(left_[joint].confidence, swapped[joint].confidence);
-        // The same joints for every way of swapping, or the sums would not compare.
-        const bool is_known = confidence >= options_.min_confidence;
-        const double sigma_px = options_.noise.Sigma(confidence, height_px_) * std::sqrt(2.0) +
-                                0.02 * height_px_ * (1 + num_missed_);
-        const double squared =
-            (left_[joint].uv_px() - swapped[joint].uv_px()).squaredNorm() / (sigma_px * sigma_px);
-        error += is_known ? std::min(squared, kMaxSquaredError) : kMaxSquaredError / 2;
-      }
-      if (swap == SideSwap::kNone) {
-        best_error = error - options_.min_swap_gain;
-      } else if (error < best_error) {
-        best_error = error;
-        best = swap;
-      }
-    }
+std::optional<Eigen::Vector2d> HumanTrack::Displacement(const PersonDetection& detection) const {
+  std::vector<Eigen::Vector2d> moves;
+  for (std::size_t joint = 0; joint < left_.size(); ++joint) {
+    if (left_[joint].confidence < options_.min_confidence) continue;
+    if (detection.left[joint].confidence < options_.min_confidence) continue;
+    moves.push_back(detection.left[joint].uv_px() - left_[joint].uv_px());
   }
-  if (best != SideSwap::kNone && best == last_swap_) best = SideSwap::kNone;
-  last_swap_ = best;
-  return best;
+  return MedianVector(moves);
+}
+
+bool HumanTrack::HasSwap(const BodyKeypoints& left, SideSwap swap, double min_gain) const {
+  if (num_missed_ > kMaxMissedForSwap) return false;
+  const BodyKeypoints swapped = SwapSides(left, swap);
+  double gain = 0;
+  for (std::size_t joint = 0; joint < left_.size(); ++joint) {
+    // Joints that the swap leaves in place gain nothing.
+    const double confidence =
+        std::min({left_[joint].confidence, left[joint].confidence, swapped[joint].confidence});
+    if (confidence < options_.min_confidence) continue;
+    const double sigma_px = options_.noise.Sigma(confidence, height_px_) * std::sqrt(2.0) +
+                            kLimbMotion * height_px_ * (1 + num_missed_);
+    const auto squared_error = [&](const BodyKeypoint& seen) {
+      const double squared = (left_[joint].uv_px() - seen.uv_px()).squaredNorm();
+      return std::min(squared / (sigma_px * sigma_px), kMaxSquaredError);
+    };
+    gain += squared_error(left[joint]) - squared_error(swapped[joint]);
+  }
+  return gain > min_gain;
 }
 
 void HumanTrack::Observe(const PersonDetection& detection, const Eigen::Vector2d& shift_px) {

@@ -12,18 +12,17 @@
 namespace airdos {
 
 struct HumanTrackOptions {
-  double motion_sigma = 0.06;         ///< of the predicted joints, of the person's height
-  double motion_sigma_growth = 0.06;  ///< added for each frame without a detection
-  double max_motion = 0.35;           ///< beyond it, of the person's height, it is somebody else
-  double max_motion_growth = 0.15;    ///< added for each frame without a detection
+  double motion_sigma = 0.15;         ///< of the predicted joints, of the person's height
+  double motion_sigma_growth = 0.03;  ///< added for each frame without a detection
+  double max_motion = 0.6;            ///< beyond it, of the person's height, it is somebody else
+  double max_motion_growth = 0.05;    ///< added for each frame without a detection
   double disparity_sigma_px = 0.8;    ///< of a person's median disparity
-  double depth_sigma = 0.06;          ///< relative change of depth from frame to frame
+  double depth_sigma = 0.1;           ///< relative change of depth from frame to frame
   double depth_sigma_growth = 0.04;
-  double appearance_sigma = 0.2;  ///< of AppearanceDistance()
+  double appearance_sigma = 0.3;  ///< of AppearanceDistance()
   double unknown_appearance_cost = 1;
   double appearance_rate = 0.2;
   double velocity_rate = 0.5;
-  double min_swap_gain = 12;  ///< sum of squared errors, in sigmas, that exchanging sides must save
   double min_confidence = 0.1;
   KeypointNoise noise;
 };
@@ -54,9 +53,16 @@ class HumanTrack {
   /// appearance. Nothing where it cannot be the same person.
   std::optional<double> Cost(const PersonDetection& detection) const;
 
-  /// How the detector confused the sides of this person, judged by the predicted joints. The same
-  /// verdict in two frames running is taken back: then the track was wrong.
-  SideSwap FindSwap(const BodyKeypoints& left);
+  /// The part of Cost() that does not depend on where the person is in the image: depth and
+  /// appearance.
+  double LooksCost(const PersonDetection& detection) const;
+  /// Median over the joints of where the detection is less where the track is, px; nothing where
+  /// they share too few joints.
+  std::optional<Eigen::Vector2d> Displacement(const PersonDetection& detection) const;
+
+  /// Whether the detection has sides exchanged in this way, judged by the predicted joints: whether
+  /// exchanging them saves `min_gain` of the sum of squared errors in sigmas.
+  bool HasSwap(const BodyKeypoints& left, SideSwap swap, double min_gain) const;
 
   /// Takes a detection whose sides are right.
   void Observe(const PersonDetection& detection, const Eigen::Vector2d& shift_px);
@@ -64,6 +70,7 @@ class HumanTrack {
 
   HumanId id() const { return id_; }
   int num_seen() const { return num_seen_; }
+  const Eigen::Vector2d& velocity_px() const { return velocity_px_; }
   int num_missed() const { return num_missed_; }  ///< frames since the last detection
   double disparity_px() const { return disparity_px_; }
   double height_px() const { return height_px_; }  ///< of the person standing, in the image
@@ -87,7 +94,6 @@ class HumanTrack {
   Eigen::Vector2d velocity_px_ = Eigen::Vector2d::Zero();  // a frame, without the camera's shift
   Appearance appearance_;
   bool has_appearance_ = false;
-  SideSwap last_swap_ = SideSwap::kNone;
 };
 
 }  // namespace airdos

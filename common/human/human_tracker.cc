@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/human/assignment.h"
+#include "common/human/shift_vote.h"
 
 namespace airdos {
 
@@ -14,6 +15,7 @@ namespace airdos {
 struct HumanTracker::Observation {
   PersonDetection detection;
   std::optional<BodyKeypoints> right;
+  SideSwap right_swap = SideSwap::kNone;  // by which the right one was made to agree
 };
 
 HumanTracker::HumanTracker(const HumanTrackerOptions& options)
@@ -21,9 +23,16 @@ HumanTracker::HumanTracker(const HumanTrackerOptions& options)
 
 TrackedFrame HumanTracker::Process(const StereoCamera& camera, const PeopleFrame& frame) {
   const StereoImages images{frame.left_gray, frame.right_gray};
-  PredictTracks(frame.left_gray);
   const StereoMatching matching = MatchStereo(options_.matcher, camera, frame.left, frame.right);
   const std::vector<Observation> observations = Observe(camera, frame, matching);
+  flow_.SetImage(frame.left_gray);
+  shift_px_ = flow_.shift_px();
+  if (options_.use_shift_vote) {
+    std::vector<PersonDetection> detections;
+    for (const Observation& observation : observations) detections.push_back(observation.detection);
+    shift_px_ = VoteShift(tracks_, detections, shift_px_);
+  }
+  PredictTracks();
   const std::vector<std::optional<int>> track_of = FindTracks(observations);
 
   TrackedFrame result;
@@ -58,8 +67,7 @@ TrackedFrame HumanTracker::Process(const StereoCamera& camera, const PeopleFrame
   return result;
 }
 
-void HumanTracker::PredictTracks(const cv::Mat& left_gray) {
-  flow_.SetImage(left_gray);
+void HumanTracker::PredictTracks() {
   std::vector<Eigen::Vector2d> from, guess;
   std::vector<std::pair<std::size_t, std::size_t>> owner;  // track, joint
   for (std::size_t track = 0; track < tracks_.size(); ++track) {
@@ -67,7 +75,7 @@ void HumanTracker::PredictTracks(const cv::Mat& left_gray) {
     for (std::size_t joint = 0; joint < left.size(); ++joint) {
       if (left[joint].confidence < options_.track.min_confidence) continue;
       from.push_back(left[joint].uv_px());
-      guess.push_back(tracks_[track].Guess(joint, flow_.shift_px()));
+      guess.push_back(tracks_[track].Guess(joint, shift_px_));
       owner.emplace_back(track, joint);
     }
   }
@@ -75,7 +83,7 @@ void HumanTracker::PredictTracks(const cv::Mat& left_gray) {
   std::vector<std::array<std::optional<Eigen::Vector2d>, kNumJoints>> moved(tracks_.size());
   for (std::size_t i = 0; i < to.size(); ++i) moved[owner[i].first][owner[i].second] = to[i];
   for (std::size_t track = 0; track < tracks_.size(); ++track) {
-    tracks_[track].Predict(moved[track], flow_.shift_px());
+    tracks_[track].Predict(moved[track], shift_px_);
   }
 }
 
@@ -94,11 +102,13 @@ std::vector<HumanTracker::Observation> HumanTracker::Observe(const StereoCamera&
     const BodyKeypoints& left = at(frame.left, pair.left);
     const double height_px = kPersonHeightM * pair.disparity_px / camera.baseline_m;
     observations.push_back({{left, pair.disparity_px, height_px, appearance(left)},
-                            SwapSides(at(frame.right, pair.right), pair.right_swap)});
+                            SwapSides(at(frame.right, pair.right), pair.right_swap),
+                            pair.right_swap});
   }
   for (const int i : matching.unpaired_left) {
     const BodyKeypoints& left = at(frame.left, i);
-    observations.push_back({{left, std::nullopt, 0, appearance(left)}, std::nullopt});
+    observations.push_back(
+        {{left, std::nullopt, 0, appearance(left)}, std::nullopt, SideSwap::kNone});
   }
   return observations;
 }
@@ -158,13 +168,29 @@ bool HumanTracker::IsReported(const JointObservations& joints, int num_seen) con
   return num_seen >= options_.min_seen_to_report && NumObserved(joints) >= options_.min_joints;
 }
 
+// One image in sixty or so has the sides of a person exchanged. Where the two detections disagree,
+// one of them is wrong and the track only has to say which; where they agree, hardly ever both are.
+SideSwap HumanTracker::FindSwap(const Observation& observation, const HumanTrack& track) const {
+  const BodyKeypoints& left = observation.detection.left;
+  if (observation.right_swap != SideSwap::kNone) {
+    const bool is_left_wrong =
+        track.HasSwap(left, observation.right_swap, options_.min_swap_gain_doubtful);
+    return is_left_wrong ? observation.right_swap : SideSwap::kNone;
+  }
+  if (observation.right) return SideSwap::kNone;
+  for (const SideSwap swap : kSideSwaps) {
+    if (track.HasSwap(left, swap, options_.min_swap_gain)) return swap;
+  }
+  return SideSwap::kNone;
+}
+
 std::optional<TrackedHuman> HumanTracker::Update(const StereoCamera& camera,
                                                  const StereoImages& images,
                                                  Observation observation, HumanTrack* track) const {
-  const SideSwap swap = track->FindSwap(observation.detection.left);
+  const SideSwap swap = FindSwap(observation, *track);
   observation.detection.left = SwapSides(observation.detection.left, swap);
   if (observation.right) observation.right = SwapSides(*observation.right, swap);
-  track->Observe(observation.detection, flow_.shift_px());
+  track->Observe(observation.detection, shift_px_);
   const JointObservations joints = Triangulate(camera, images, observation, track->disparity_px());
   if (!IsReported(joints, track->num_seen())) return std::nullopt;
   return TrackedHuman{track->id(), joints};

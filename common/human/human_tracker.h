@@ -23,6 +23,9 @@ struct HumanTrackerOptions {
   bool use_left_only = true;   ///< report people whom only the left detections have
   int max_carried_frames = 1;  ///< report people by optical flow for as many missed frames
   double carried_sigma_factor = 1.5;
+  double min_swap_gain = 20;  ///< squared errors, in sigmas, that exchanging sides must save
+  double min_swap_gain_doubtful = 3;  ///< the same where left and right detection disagree on sides
+  bool use_shift_vote = true;         ///< let the people tell how far the camera turned
   StereoMatcherOptions matcher;
   JointTriangulatorOptions triangulator;
   ImageFlowOptions flow;
@@ -60,13 +63,14 @@ class HumanTracker {
  private:
   struct Observation;
 
-  void PredictTracks(const cv::Mat& left_gray);
+  void PredictTracks();
   std::vector<Observation> Observe(const StereoCamera& camera, const PeopleFrame& frame,
                                    const StereoMatching& matching) const;
   // For each observation the track it belongs to.
   std::vector<std::optional<int>> FindTracks(const std::vector<Observation>& observations) const;
   void Associate(const std::vector<Observation>& observations, bool is_stereo, double gate,
                  std::vector<bool>* is_track_taken, std::vector<std::optional<int>>* tracks) const;
+  SideSwap FindSwap(const Observation& observation, const HumanTrack& track) const;
   std::optional<TrackedHuman> Update(const StereoCamera& camera, const StereoImages& images,
                                      Observation observation, HumanTrack* track) const;
   std::optional<TrackedHuman> Start(const StereoCamera& camera, const StereoImages& images,
@@ -79,7 +83,8 @@ class HumanTracker {
 
   HumanTrackerOptions options_;
   ImageFlow flow_;
-  std::vector<HumanTrack> tracks_;  // sorted by id
+  std::vector<HumanTrack> tracks_;                      // sorted by id
+  Eigen::Vector2d shift_px_ = Eigen::Vector2d::Zero();  // of the image since the last frame
   HumanId next_id_{1};
 };
 

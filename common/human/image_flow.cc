@@ -37,7 +37,9 @@ void ImageFlow::MeasureShift(const cv::Mat& gray) {
   cv::Mat reduced;
   cv::resize(gray, reduced, {gray.cols / kShiftReduction, gray.rows / kShiftReduction}, 0, 0,
              cv::INTER_AREA);
-  const cv::Mat last = small_;
+  // A header that owns the pixels alone: converting into small_ would overwrite them.
+  const cv::Mat last = std::move(small_);
+  small_ = cv::Mat();
   reduced.convertTo(small_, CV_32F);
   if (last.empty() || small_.cols < 8 || small_.rows < 8) return;
   if (hanning_.size() != small_.size()) cv::createHanningWindow(hanning_, small_.size(), CV_32F);

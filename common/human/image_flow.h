@@ -10,7 +10,7 @@ namespace airdos {
 
 struct ImageFlowOptions {
   int window_px = 13;                ///< side of the patch that is followed
-  int num_levels = 3;                ///< pyramid levels above the full image
+  int num_levels = 4;                ///< pyramid levels above the full image
   double max_return_error_px = 1;    ///< between a point and its way there and back
   double min_shift_response = 0.05;  ///< below it the shift of the whole image is taken as none
 };

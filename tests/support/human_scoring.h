@@ -30,7 +30,7 @@ struct HumanScore {
       0;  ///< e' C^-1 e over reported joints, outliers above 50 left out
   int num_normalised = 0;
   IdentityScore identity;
-  std::vector<double> frame_ms;  ///< for information only
+  std::vector<double> frame_ms;  ///< of CPU, decoding the images included; for information only
 
   double PairPrecision() const;
   double PairRecall() const;
