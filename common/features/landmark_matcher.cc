@@ -87,7 +87,7 @@ std::vector<LandmarkMatch> MatchByProjection(const std::vector<VisibleLandmark>&
 }
 
 std::vector<LandmarkMatch> MatchByDescriptor(
-    const std::vector<std::pair<LandmarkId, const MapLandmark*>>& landmarks,
+    const std::vector<std::pair<LandmarkId, const LocalLandmark*>>& landmarks,
     const std::vector<Feature>& features, int max_hamming, double max_ratio) {
   if (landmarks.empty() || features.size() < 2) return {};
   cv::Mat query = DescriptorMatrix(landmarks.size());

@@ -27,7 +27,7 @@ struct ProjectionSearch {
 /// A landmark that should be in view, and where.
 struct VisibleLandmark {
   LandmarkId id;
-  const MapLandmark* landmark = nullptr;
+  const LocalLandmark* landmark = nullptr;
   Eigen::Vector3d p_C = Eigen::Vector3d::Zero();
   Eigen::Vector2d uv_px = Eigen::Vector2d::Zero();
   int level = 0;             ///< at which it should look as when it was created
@@ -49,7 +49,7 @@ std::vector<LandmarkMatch> MatchByProjection(const std::vector<VisibleLandmark>&
 /// Matches landmarks to features anywhere in the image (brute force with ratio test and cross
 /// check).
 std::vector<LandmarkMatch> MatchByDescriptor(
-    const std::vector<std::pair<LandmarkId, const MapLandmark*>>& landmarks,
+    const std::vector<std::pair<LandmarkId, const LocalLandmark*>>& landmarks,
     const std::vector<Feature>& features, int max_hamming, double max_ratio);
 
 }  // namespace airdos

@@ -4,7 +4,7 @@
 
 namespace airdos {
 
-LandmarkId LocalMap::Add(MapLandmark landmark) {
+LandmarkId LocalMap::Add(LocalLandmark landmark) {
   const LandmarkId id{next_id_++};
   landmarks_.emplace(id, std::move(landmark));
   return id;
@@ -45,7 +45,7 @@ void LocalMap::Apply(const MapCorrection& correction) {
 void LocalMap::Cull(FrameId now) {
   constexpr int kMinExpected = 10;
   for (auto it = landmarks_.begin(); it != landmarks_.end();) {
-    const MapLandmark& landmark = it->second;
+    const LocalLandmark& landmark = it->second;
     const bool is_unconfirmed = landmark.num_seen < 2 && now.value - landmark.last_seen.value >
                                                              options_.max_frames_unconfirmed;
     const bool is_not_found = landmark.num_expected >= kMinExpected &&

@@ -17,7 +17,7 @@
 namespace airdos {
 
 /// A static point of the world and how it looked when it was created.
-struct MapLandmark {
+struct LocalLandmark {
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
   bool is_refined =
       false;  ///< p_W comes from the optimizer; else it moves with its reference frame
@@ -53,11 +53,11 @@ class LocalMap {
  public:
   explicit LocalMap(const LocalMapOptions& options) : options_(options) {}
 
-  std::map<LandmarkId, MapLandmark>& landmarks() { return landmarks_; }
-  const std::map<LandmarkId, MapLandmark>& landmarks() const { return landmarks_; }
+  std::map<LandmarkId, LocalLandmark>& landmarks() { return landmarks_; }
+  const std::map<LandmarkId, LocalLandmark>& landmarks() const { return landmarks_; }
   const std::map<FrameId, Se3>& poses_W_C() const { return poses_; }
 
-  LandmarkId Add(MapLandmark landmark);
+  LandmarkId Add(LocalLandmark landmark);
   void SetPose(FrameId frame, const Se3& T_W_C);
 
   /// Takes over the optimizer's poses and points. Frames newer than the correction keep their
@@ -73,7 +73,7 @@ class LocalMap {
 
   LocalMapOptions options_;
   std::int64_t next_id_ = 1;
-  std::map<LandmarkId, MapLandmark> landmarks_;
+  std::map<LandmarkId, LocalLandmark> landmarks_;
   std::map<FrameId, Se3> poses_;
 };
 

@@ -7,9 +7,10 @@
 
 namespace airdos {
 
-StereoMatcher::StereoMatcher(const StereoMatcherOptions& options, const StereoCamera& camera,
-                             const ImagePyramid& left, const ImagePyramid& right,
-                             const std::vector<Feature>& right_features)
+FeatureStereoMatcher::FeatureStereoMatcher(const FeatureStereoMatcherOptions& options,
+                                           const StereoCamera& camera, const ImagePyramid& left,
+                                           const ImagePyramid& right,
+                                           const std::vector<Feature>& right_features)
     : options_(options),
       left_(left),
       right_(right),
@@ -23,7 +24,7 @@ StereoMatcher::StereoMatcher(const StereoMatcherOptions& options, const StereoCa
   }
 }
 
-std::optional<double> StereoMatcher::Match(const Feature& left) const {
+std::optional<double> FeatureStereoMatcher::Match(const Feature& left) const {
   const double row_error_px = options_.max_row_error_px * left_.scale(left.level);
   const int row_begin = std::max(0, static_cast<int>(std::ceil(left.uv_px.y() - row_error_px)));
   const int row_end =
@@ -50,8 +51,9 @@ std::optional<double> StereoMatcher::Match(const Feature& left) const {
   return Refine(left.uv_px, left.level, best->uv_px.x(), kMaxShift_px);
 }
 
-std::optional<double> StereoMatcher::Refine(const Eigen::Vector2d& uv_left_px, int level,
-                                            double u_right_guess_px, double max_shift_px) const {
+std::optional<double> FeatureStereoMatcher::Refine(const Eigen::Vector2d& uv_left_px, int level,
+                                                   double u_right_guess_px,
+                                                   double max_shift_px) const {
   const Eigen::Vector2d uv_level(left_.ToLevel(uv_left_px.x(), level),
                                  left_.ToLevel(uv_left_px.y(), level));
   const std::optional<Patch> patch = Patch::Sample(left_.level(level), uv_level, 1.0);

@@ -10,7 +10,7 @@
 
 namespace airdos {
 
-struct StereoMatcherOptions {
+struct FeatureStereoMatcherOptions {
   double min_depth_m = 0.5;       ///< nearer than this nothing is matched
   double min_disparity_px = 0.7;  ///< farther than this the depth says nothing
   int max_hamming = 75;           ///< bits
@@ -19,11 +19,11 @@ struct StereoMatcherOptions {
 };
 
 /// Where the features of the left image are in the right image of a rectified pair.
-class StereoMatcher {
+class FeatureStereoMatcher {
  public:
-  StereoMatcher(const StereoMatcherOptions& options, const StereoCamera& camera,
-                const ImagePyramid& left, const ImagePyramid& right,
-                const std::vector<Feature>& right_features);
+  FeatureStereoMatcher(const FeatureStereoMatcherOptions& options, const StereoCamera& camera,
+                       const ImagePyramid& left, const ImagePyramid& right,
+                       const std::vector<Feature>& right_features);
 
   /// By descriptor along the row, then to a fraction of a pixel: u_right in px of level 0.
   std::optional<double> Match(const Feature& left) const;
@@ -32,7 +32,7 @@ class StereoMatcher {
                                double u_right_guess_px, double max_shift_px) const;
 
  private:
-  const StereoMatcherOptions options_;
+  const FeatureStereoMatcherOptions options_;
   const ImagePyramid& left_;
   const ImagePyramid& right_;
   const std::vector<Feature>& right_features_;

@@ -59,16 +59,16 @@ bool IsMasked(const cv::Mat& mask, const Eigen::Vector2d& uv_px) {
 
 struct VisualOdometry::View {
   const StereoCamera& camera;
-  const StereoImages& images;
+  const StereoImagePair& images;
   std::shared_ptr<const ImagePyramid> left;
   ImagePyramid right;
   std::vector<Feature> left_features;
   std::vector<Feature> right_features;
   std::unique_ptr<FeatureGrid> grid;
-  std::unique_ptr<StereoMatcher> stereo;
+  std::unique_ptr<FeatureStereoMatcher> stereo;
   int num_masked = 0;
 
-  View(const StereoCamera& camera_in, const StereoImages& images_in,
+  View(const StereoCamera& camera_in, const StereoImagePair& images_in,
        const VisualOdometryOptions& options, const FeatureExtractor& extractor)
       : camera(camera_in),
         images(images_in),
@@ -78,11 +78,12 @@ struct VisualOdometry::View {
     left_features = extractor.Extract(*left, images.mask, &num_masked);
     right_features = extractor.Extract(right, cv::Mat(), &num_masked_right);
     grid = std::make_unique<FeatureGrid>(left_features, camera.width, camera.height);
-    stereo = std::make_unique<StereoMatcher>(options.stereo, camera, *left, right, right_features);
+    stereo = std::make_unique<FeatureStereoMatcher>(options.stereo, camera, *left, right,
+                                                    right_features);
   }
 };
 
-OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoImages& images) {
+OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoImagePair& images) {
   AIRDOS_CHECK(images.left.cols == camera.width && images.left.rows == camera.height);
   AIRDOS_CHECK(images.right.size() == images.left.size());
   const View view(camera, images, options_, extractor_);
@@ -197,7 +198,7 @@ std::optional<Se3> VisualOdometry::Relocate(const View& view) const {
   if (recent_.empty()) return std::nullopt;
   const std::size_t num_back = std::min<std::size_t>(recent_.size(), kRecentFrames);
   const FrameId oldest = recent_[recent_.size() - num_back].first;
-  std::vector<std::pair<LandmarkId, const MapLandmark*>> candidates;
+  std::vector<std::pair<LandmarkId, const LocalLandmark*>> candidates;
   for (const auto& [id, landmark] : map_.landmarks()) {
     if (!(landmark.last_seen < oldest)) candidates.emplace_back(id, &landmark);
   }
@@ -270,7 +271,7 @@ std::optional<LandmarkSighting> VisualOdometry::SightOne(const View& view,
                                                          const Feature* feature) const {
   constexpr double kMaxShift_px = 4;       // of the level
   constexpr double kMaxRightShift_px = 3;  // of the level
-  const MapLandmark& landmark = *visible.landmark;
+  const LocalLandmark& landmark = *visible.landmark;
   const int level = visible.level;
   LandmarkSighting sighting;
   sighting.id = visible.id;
@@ -327,7 +328,7 @@ void VisualOdometry::UpdateLandmarks(const View& view, const Se3& T_W_C,
   constexpr double kMaxDepthRatio = 1.18;
   const Se3 T_C_W = T_W_C.inverse();
   for (const LandmarkSighting& sighting : sightings) {
-    MapLandmark& landmark = map_.landmarks().at(sighting.id);
+    LocalLandmark& landmark = map_.landmarks().at(sighting.id);
     landmark.last_seen = view.images.id;
     ++landmark.num_seen;
     const Eigen::Vector3d p_C = T_C_W * landmark.p_W;
@@ -364,7 +365,7 @@ void VisualOdometry::CreateLandmarks(const View& view, const Se3& T_W_C,
     const auto p_C = view.camera.Triangulate(feature->uv_px.x(), feature->uv_px.y(), *u_right_px);
     if (!p_C) continue;
     cells.Take(feature->uv_px, kMaxPerCell);
-    MapLandmark landmark;
+    LocalLandmark landmark;
     landmark.p_W = T_W_C * *p_C;
     landmark.reference_frame = view.images.id;
     landmark.p_C_reference = *p_C;

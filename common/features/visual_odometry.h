@@ -19,7 +19,7 @@ namespace airdos {
 
 struct VisualOdometryOptions {
   FeatureExtractorOptions extractor;
-  StereoMatcherOptions stereo;
+  FeatureStereoMatcherOptions stereo;
   LocalMapOptions map;
   double wide_radius_px = 30;     ///< first search around the constant-velocity prediction
   int wide_max_hamming = 64;      ///< bits
@@ -40,7 +40,7 @@ struct VisualOdometryOptions {
 enum class TrackingState { kInitializing, kTracking, kWeak, kCoasting };
 
 /// One stereo frame; images are CV_8UC1 of the camera's size.
-struct StereoImages {
+struct StereoImagePair {
   FrameId id;
   double time_s = 0;  ///< capture time
   cv::Mat left;
@@ -76,7 +76,7 @@ class VisualOdometry {
   explicit VisualOdometry(const VisualOdometryOptions& options)
       : options_(options), extractor_(options.extractor), map_(options.map) {}
 
-  OdometryFrame Process(const StereoCamera& camera, const StereoImages& images);
+  OdometryFrame Process(const StereoCamera& camera, const StereoImagePair& images);
   /// A frame without usable images: coasts.
   OdometryFrame Coast(FrameId id, double time_s);
   void Apply(const MapCorrection& correction) { map_.Apply(correction); }

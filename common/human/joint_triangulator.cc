@@ -32,8 +32,8 @@ double ExtentPx(const JointTriangulatorOptions& options, const StereoCamera& cam
   return options.body_extent_m * disparity_px * disparity_px / FocalBaseline(camera);
 }
 
-std::optional<JointObservation> MakeObservation(const JointTriangulatorOptions& options,
-                                                const StereoCamera& camera, const Measurement& m) {
+std::optional<TriangulatedJoint> MakeObservation(const JointTriangulatorOptions& options,
+                                                 const StereoCamera& camera, const Measurement& m) {
   if (!(m.disparity_px > FocalBaseline(camera) / options.max_depth_m) ||
       !(m.disparity_px < FocalBaseline(camera) / options.min_depth_m)) {
     return std::nullopt;
@@ -41,7 +41,7 @@ std::optional<JointObservation> MakeObservation(const JointTriangulatorOptions& 
   const std::optional<Eigen::Vector3d> p_C =
       camera.Triangulate(m.u_left_px, m.v_px, m.u_left_px - m.disparity_px);
   if (!p_C) return std::nullopt;
-  JointObservation joint;
+  TriangulatedJoint joint;
   joint.u_left_px = m.u_left_px;
   joint.v_px = m.v_px;
   joint.u_right_px = m.u_left_px - m.disparity_px;
@@ -83,10 +83,10 @@ Fused Fuse(double a, double sigma_a, double b, double sigma_b) {
           1 / std::sqrt(weight_a + weight_b)};
 }
 
-std::optional<JointObservation> TriangulateJoint(const JointTriangulatorOptions& options,
-                                                 const StereoCamera& camera,
-                                                 const StereoImages& images, const BodyKeypoint& l,
-                                                 const BodyKeypoint& r, double person_px) {
+std::optional<TriangulatedJoint> TriangulateJoint(const JointTriangulatorOptions& options,
+                                                  const StereoCamera& camera,
+                                                  const StereoImages& images, const BodyKeypoint& l,
+                                                  const BodyKeypoint& r, double person_px) {
   if (l.confidence < options.min_confidence || r.confidence < options.min_confidence) {
     return std::nullopt;
   }
@@ -128,7 +128,7 @@ std::optional<JointObservation> TriangulateJoint(const JointTriangulatorOptions&
 }
 
 bool IsImpossible(const JointTriangulatorOptions& options, const Segment& segment,
-                  const JointObservation& a, const JointObservation& b) {
+                  const TriangulatedJoint& a, const TriangulatedJoint& b) {
   const Eigen::Vector3d along = a.p_C - b.p_C;
   const double length_m = along.norm();
   const Eigen::Matrix3d covariance = a.covariance_C + b.covariance_C;

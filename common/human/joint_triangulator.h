@@ -13,7 +13,7 @@
 namespace airdos {
 
 /// One joint in one stereo frame. C is the left camera.
-struct JointObservation {
+struct TriangulatedJoint {
   double u_left_px = 0;
   double v_px = 0;  ///< row in both images, from both detections
   double u_right_px = 0;
@@ -23,7 +23,7 @@ struct JointObservation {
   Eigen::Matrix3d covariance_C = Eigen::Matrix3d::Zero();  ///< m^2
 };
 /// One person, by Joint.
-using JointObservations = std::array<std::optional<JointObservation>, kNumJoints>;
+using JointObservations = std::array<std::optional<TriangulatedJoint>, kNumJoints>;
 
 struct JointTriangulatorOptions {
   double min_confidence = 0.1;

@@ -5,7 +5,7 @@
 namespace airdos {
 namespace {
 
-// Type 2 is that of MapChanges.
+// Type 2 is that of MapDelta.
 constexpr std::uint32_t kHeadType = 1;
 constexpr std::uint32_t kEndType = 3;
 
@@ -37,7 +37,7 @@ bool ApplyEnd(const MapChunk& chunk, FourDMap* map) {
 bool ApplyChunk(const MapChunk& chunk, FourDMap* map) {
   if (chunk.type == kHeadType) return ApplyHead(chunk, map);
   if (chunk.type == kEndType) return ApplyEnd(chunk, map);
-  MapChanges changes;
+  MapDelta changes;
   if (!changes.FromChunk(chunk)) return false;
   changes.Apply(map);
   return true;

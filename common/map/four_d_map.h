@@ -71,7 +71,7 @@ struct FourDMap {
 };
 
 /// What changed since the chunk before. What comes later replaces what came before.
-class MapChanges {
+class MapDelta {
  public:
   /// Parts of the frame that are set replace what was known of them.
   void SetFrame(FrameId id, const MapFrame& frame);

@@ -130,27 +130,27 @@ void Merge(const MapFrame& newer, MapFrame* frame) {
 
 }  // namespace
 
-void MapChanges::SetFrame(FrameId id, const MapFrame& frame) { Merge(frame, &frames_[id]); }
+void MapDelta::SetFrame(FrameId id, const MapFrame& frame) { Merge(frame, &frames_[id]); }
 
-void MapChanges::SetLandmark(LandmarkId id, const MapLandmark& landmark) {
+void MapDelta::SetLandmark(LandmarkId id, const MapLandmark& landmark) {
   removed_.erase(id);
   landmarks_[id] = landmark;
 }
 
-void MapChanges::RemoveLandmark(LandmarkId id) {
+void MapDelta::RemoveLandmark(LandmarkId id) {
   landmarks_.erase(id);
   removed_.insert(id);
 }
 
-void MapChanges::SetHuman(FrameId frame, HumanId human, MapHuman state) {
+void MapDelta::SetHuman(FrameId frame, HumanId human, MapHuman state) {
   humans_[{frame, human}] = std::move(state);
 }
 
-bool MapChanges::empty() const {
+bool MapDelta::empty() const {
   return frames_.empty() && landmarks_.empty() && removed_.empty() && humans_.empty();
 }
 
-std::size_t MapChanges::ApproximateBytes() const {
+std::size_t MapDelta::ApproximateBytes() const {
   constexpr std::size_t kWholeFrameBytes = kFrameBytes + 3 * 56;
   const std::size_t whole_human_bytes = kHumanBytes + kNumJoints * kJointBytes +
                                         kNumSegments * kSegmentBytes + kNumParts * kMotionBytes;
@@ -158,14 +158,14 @@ std::size_t MapChanges::ApproximateBytes() const {
          removed_.size() * sizeof(std::int64_t) + humans_.size() * whole_human_bytes;
 }
 
-void MapChanges::Apply(FourDMap* map) const {
+void MapDelta::Apply(FourDMap* map) const {
   for (const auto& [id, frame] : frames_) Merge(frame, &map->frames[id]);
   for (const LandmarkId id : removed_) map->landmarks.erase(id);
   for (const auto& [id, landmark] : landmarks_) map->landmarks[id] = landmark;
   for (const auto& [key, human] : humans_) map->humans[key] = human;
 }
 
-MapChunk MapChanges::ToChunk() const {
+MapChunk MapDelta::ToChunk() const {
   ByteWriter writer;
   writer.U32(static_cast<std::uint32_t>(frames_.size()));
   for (const auto& [id, frame] : frames_) WriteFrame(id, frame, &writer);
@@ -187,8 +187,8 @@ MapChunk MapChanges::ToChunk() const {
   return {kChangesType, writer.Take()};
 }
 
-bool MapChanges::FromChunk(const MapChunk& chunk) {
-  *this = MapChanges();
+bool MapDelta::FromChunk(const MapChunk& chunk) {
+  *this = MapDelta();
   if (chunk.type != kChangesType) return false;
   ByteReader reader(chunk.bytes.data(), chunk.bytes.size());
   for (std::uint32_t n = reader.Count(kFrameBytes); n > 0; --n) {

@@ -129,8 +129,8 @@ void FrontendNode::ApplyUpdates() {
   }
 }
 
-std::optional<StereoImages> FrontendNode::Images(const Header& header,
-                                                 const FrontendInputs& inputs) {
+std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
+                                                    const FrontendInputs& inputs) {
   if (!inputs.left || !inputs.right) return std::nullopt;
   const std::optional<cv::Mat> left = DecodeGray(*inputs.left);
   const std::optional<cv::Mat> right = DecodeGray(*inputs.right);
@@ -143,11 +143,11 @@ std::optional<StereoImages> FrontendNode::Images(const Header& header,
     return false;
   };
   if (!fits(left, channel::kCameraLeft) || !fits(right, channel::kCameraRight)) return std::nullopt;
-  StereoImages images{FrameId{header.seq},
-                      static_cast<double>(header.utime - first_.utime) * 1e-6,
-                      *left,
-                      *right,
-                      {}};
+  StereoImagePair images{FrameId{header.seq},
+                         static_cast<double>(header.utime - first_.utime) * 1e-6,
+                         *left,
+                         *right,
+                         {}};
   if (!inputs.mask || inputs.mask->encoding == person_mask_t::ENCODING_NONE) return images;
   const std::optional<cv::Mat> mask = DecodeMask(*inputs.mask);
   if (!fits(mask, channel::kPersonMask)) return images;
@@ -159,7 +159,7 @@ std::optional<StereoImages> FrontendNode::Images(const Header& header,
 
 void FrontendNode::ProcessFrame(const Header& header, FrontendInputs inputs) {
   ApplyUpdates();
-  const std::optional<StereoImages> images = Images(header, inputs);
+  const std::optional<StereoImagePair> images = Images(header, inputs);
   const double time_s = static_cast<double>(header.utime - first_.utime) * 1e-6;
   const OdometryFrame frame = images ? odometry_->Process(camera(), *images)
                                      : odometry_->Coast(FrameId{header.seq}, time_s);

@@ -55,7 +55,7 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   /// Frame whose update must be there before the next frame starts.
   std::optional<std::int64_t> RequiredUpdate() const;
   void ApplyUpdates();
-  std::optional<StereoImages> Images(const Header& header, const FrontendInputs& inputs);
+  std::optional<StereoImagePair> Images(const Header& header, const FrontendInputs& inputs);
 
   const FrontendOptions options_;
   std::unique_ptr<VisualOdometry> odometry_;

@@ -47,7 +47,7 @@ human_observation_t ToMessage(const TrackedHuman& human) {
   human_observation_t message{};
   message.track_id = human.id.value;
   for (std::size_t joint = 0; joint < human.joints.size(); ++joint) {
-    const std::optional<JointObservation>& seen = human.joints[joint];
+    const std::optional<TriangulatedJoint>& seen = human.joints[joint];
     if (!seen) continue;
     const auto as_float = [](double value) { return static_cast<float>(value); };
     message.joint_id.push_back(static_cast<int8_t>(joint));

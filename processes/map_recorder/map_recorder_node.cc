@@ -40,7 +40,7 @@ MapHuman ToMapHuman(const human_state_t& message) {
   return human;
 }
 
-void AddUpdate(const map_update_t& message, MapChanges* changes) {
+void AddUpdate(const map_update_t& message, MapDelta* changes) {
   for (const frame_pose_t& pose : message.frames) {
     MapFrame frame;
     frame.utime = pose.utime;
@@ -171,7 +171,7 @@ void MapRecorderNode::Append(const MapChunk& chunk) {
 }
 
 void MapRecorderNode::WriteChunk() {
-  const MapChanges changes = std::exchange(changes_, MapChanges());
+  const MapDelta changes = std::exchange(changes_, MapDelta());
   num_frames_in_chunk_ = 0;
   if (!changes.empty()) Append(changes.ToChunk());
 }

@@ -71,7 +71,7 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   int num_sessions_ = 0;
   std::int64_t session_ = 0;
   std::unique_ptr<MapFileWriter> file_;  // none before the first frame and after a failure
-  MapChanges changes_;                   // of the open chunk
+  MapDelta changes_;                     // of the open chunk
   int num_frames_in_chunk_ = 0;
 
   struct GroundTruth {

@@ -26,13 +26,13 @@ const StereoPair& Walk(int k) {
 /// In W, which is the first left camera.
 Se3 Truth(int k) { return SwayingPath(0).inverse() * SwayingPath(k); }
 
-StereoImages Frame(int k) {
+StereoImagePair Frame(int k) {
   const StereoPair& pair = Walk(k);
   return {FrameId{k}, kFrameStep_s * k, pair.left, pair.right, {}};
 }
 
-StereoImages BlackFrame(int k) {
-  StereoImages images = Frame(k);
+StereoImagePair BlackFrame(int k) {
+  StereoImagePair images = Frame(k);
   // Not cv::Mat::zeros(): assigning it would fill the pixels that Walk() keeps.
   images.left = cv::Mat(kCamera.height, kCamera.width, CV_8UC1, cv::Scalar(0));
   images.right = images.left.clone();
@@ -121,7 +121,7 @@ TEST(VisualOdometry, AMaskOverMostOfTheImageIsKeptFreeAndSurvived) {
     return mask;
   };
   const std::vector<OdometryFrame> frames = RunAll([&](int k) {
-    StereoImages images = Frame(k);
+    StereoImagePair images = Frame(k);
     images.mask = mask_of(k);
     return images;
   });
@@ -191,7 +191,7 @@ TEST(VisualOdometry, AFirstFrameWithoutImagesIsTheOrigin) {
 
 TEST(VisualOdometry, AClockThatStandsStillOrJumpsDoesNoHarm) {
   const std::vector<OdometryFrame> frames = RunAll([](int k) {
-    StereoImages images = Frame(k);
+    StereoImagePair images = Frame(k);
     if (k >= 8) images.time_s = Frame(k - 1).time_s;  // twice the same time at 7, 8
     if (k >= 15) images.time_s += 3600;               // one hour on
     if (k >= 20) images.time_s -= 7200;               // and two back
@@ -207,7 +207,7 @@ TEST(VisualOdometry, AClockThatStandsStillOrJumpsDoesNoHarm) {
 TEST(VisualOdometry, TheSamePictureAgainIsTheSamePose) {
   VisualOdometry odometry({});
   for (int k = 0; k < 10; ++k) odometry.Process(kCamera, Frame(k));
-  StereoImages again = Frame(9);
+  StereoImagePair again = Frame(9);
   again.id = FrameId{10};  // and at the same time as frame 9
   const OdometryFrame frame = odometry.Process(kCamera, again);
   EXPECT_EQ(frame.state, TrackingState::kTracking);

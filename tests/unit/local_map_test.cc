@@ -14,8 +14,8 @@ Se3 Pose(double x, double yaw_rad) {
 
 double Error(const Se3& a, const Se3& b) { return Boxminus(a, b).norm(); }
 
-MapLandmark LandmarkOf(const LocalMap& map, FrameId frame, const Eigen::Vector3d& p_C) {
-  MapLandmark landmark;
+LocalLandmark LandmarkOf(const LocalMap& map, FrameId frame, const Eigen::Vector3d& p_C) {
+  LocalLandmark landmark;
   landmark.reference_frame = frame;
   landmark.p_C_reference = p_C;
   landmark.p_W = map.poses_W_C().at(frame) * p_C;
@@ -62,7 +62,7 @@ TEST(LocalMapApply, UnrefinedLandmarksFollowTheirReferenceFrame) {
   LocalMap map = FiveFrames();
   map.Apply({FrameId{3}, {{FrameId{2}, Pose(2.5, 0)}, {FrameId{3}, Pose(3.5, 0)}}, {}, {}});
   for (std::int64_t id = 1; id <= 5; ++id) {
-    const MapLandmark& landmark = map.landmarks().at(LandmarkId{id});
+    const LocalLandmark& landmark = map.landmarks().at(LandmarkId{id});
     EXPECT_FALSE(landmark.is_refined);
     EXPECT_LT((landmark.p_W - map.poses_W_C().at(FrameId{id}) * landmark.p_C_reference).norm(),
               1e-12);

@@ -79,7 +79,7 @@ MapHuman Person(float x) {
 void WriteSmallMap(const std::string& path) {
   MapFileWriter writer(path);
   writer.Append(HeadChunk(77, "test 1"));
-  MapChanges changes;
+  MapDelta changes;
   changes.SetFrame({0}, LiveFrame(1000001, 0));
   changes.SetFrame({1}, LiveFrame(1100000, 1));
   changes.SetFrame({0}, RefinedFrame(0.5));
@@ -87,7 +87,7 @@ void WriteSmallMap(const std::string& path) {
   changes.SetLandmark({6}, {{4, 5, 6}, 0.2f, 2});
   changes.SetHuman({0}, {3}, Person(1));
   writer.Append(changes.ToChunk());
-  changes = MapChanges();
+  changes = MapDelta();
   changes.SetFrame({0}, RefinedFrame(0.7));
   changes.SetLandmark({5}, {{1.5f, 2, 3}, 0.05f, 9});
   changes.RemoveLandmark({6});
@@ -144,7 +144,7 @@ TEST_F(MapTest, LastOneWins) {
 }
 
 TEST_F(MapTest, ALandmarkMayComeBackAfterItWasRemoved) {
-  MapChanges changes;
+  MapDelta changes;
   changes.SetLandmark({1}, {});
   changes.RemoveLandmark({1});
   changes.SetLandmark({1}, {{7, 0, 0}, 0, 1});
@@ -225,9 +225,9 @@ TEST_F(MapTest, DoesNotBelieveLengths) {
   // Counts inside a chunk whose checksum is right.
   ByteWriter writer;
   writer.U32(0xFFFFFFFF);
-  MapChunk chunk = MapChanges().ToChunk();
+  MapChunk chunk = MapDelta().ToChunk();
   chunk.bytes = writer.Take();
-  EXPECT_FALSE(MapChanges().FromChunk(chunk));
+  EXPECT_FALSE(MapDelta().FromChunk(chunk));
   MapFileWriter file(path_);
   file.Append(HeadChunk(1, ""));
   file.Append(chunk);
@@ -275,7 +275,7 @@ TEST_F(MapTest, AFullDiskCostsOnlyTheChunkThatDidNotFit) {
   rlimit limit = before;
   limit.rlim_cur = static_cast<rlim_t>(size) + 20;
   setrlimit(RLIMIT_FSIZE, &limit);
-  MapChanges changes;
+  MapDelta changes;
   for (int i = 0; i < 100; ++i) changes.SetFrame({i}, LiveFrame(i, i));
   EXPECT_THROW(writer.Append(changes.ToChunk()), InputError);
   setrlimit(RLIMIT_FSIZE, &before);

@@ -19,9 +19,10 @@ struct Rig {
   ImagePyramid right;
   std::vector<Feature> left_features;
   std::vector<Feature> right_features;
-  StereoMatcher matcher;
+  FeatureStereoMatcher matcher;
 
-  Rig(const cv::Mat& left_image, const cv::Mat& right_image, const StereoMatcherOptions& options)
+  Rig(const cv::Mat& left_image, const cv::Mat& right_image,
+      const FeatureStereoMatcherOptions& options)
       : left(left_image, kNumLevels),
         right(right_image, kNumLevels),
         left_features(Features(left)),
@@ -55,7 +56,7 @@ double Median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-TEST(StereoMatcher, FindsTheDisparityToAFractionOfAPixel) {
+TEST(FeatureStereoMatcher, FindsTheDisparityToAFractionOfAPixel) {
   for (const double disparity_px : {1.4, 7.3, 26.55}) {
     const Rig rig(Left(), Right(disparity_px), {});
     const std::vector<double> disparities_px = rig.Disparities_px();
@@ -71,7 +72,7 @@ TEST(StereoMatcher, FindsTheDisparityToAFractionOfAPixel) {
   }
 }
 
-TEST(StereoMatcher, FindsTheDepthsOfARenderedScene) {
+TEST(FeatureStereoMatcher, FindsTheDepthsOfARenderedScene) {
   const RenderedScene scene(4);
   const StereoCamera camera = SmallStereoCamera();
   const StereoPair pair = scene.Render(camera, Se3());
@@ -88,9 +89,9 @@ TEST(StereoMatcher, FindsTheDepthsOfARenderedScene) {
   EXPECT_LT(Median(errors_px), 0.1);
 }
 
-TEST(StereoMatcher, NothingNearerThanTheMinimalDepth) {
+TEST(FeatureStereoMatcher, NothingNearerThanTheMinimalDepth) {
   // fx * baseline = 52.5 px m: a disparity of 7.3 px is 7.2 m away.
-  StereoMatcherOptions options;
+  FeatureStereoMatcherOptions options;
   options.min_depth_m = 7.0;
   EXPECT_GT(Rig(Left(), Right(7.3), options).Disparities_px().size(), 100u);
   options.min_depth_m = 7.4;
@@ -100,8 +101,8 @@ TEST(StereoMatcher, NothingNearerThanTheMinimalDepth) {
   EXPECT_LT(Rig(Left(), Right(7.3), options).Disparities_px().size(), 10u);  // mistakes
 }
 
-TEST(StereoMatcher, NothingBelowTheMinimalDisparity) {
-  StereoMatcherOptions options;
+TEST(FeatureStereoMatcher, NothingBelowTheMinimalDisparity) {
+  FeatureStereoMatcherOptions options;
   options.min_disparity_px = 0.7;
   for (const double disparity_px : Rig(Left(), Right(0.4), options).Disparities_px())
     EXPECT_GE(disparity_px, 0.7);
@@ -109,18 +110,18 @@ TEST(StereoMatcher, NothingBelowTheMinimalDisparity) {
   EXPECT_TRUE(Rig(Left(), Right(-5), options).Disparities_px().size() < 15u);
 }
 
-TEST(StereoMatcher, NothingInAnotherRow) {
+TEST(FeatureStereoMatcher, NothingInAnotherRow) {
   EXPECT_LT(Rig(Left(), Right(7.3, 12), {}).Disparities_px().size(), 15u);
 }
 
-TEST(StereoMatcher, NothingInAnotherPicture) {
+TEST(FeatureStereoMatcher, NothingInAnotherPicture) {
   const cv::Mat other = NoisePicture(320, 192, 10);
   EXPECT_LT(Rig(Left(), other, {}).Disparities_px().size(), 15u);
   const cv::Mat black = cv::Mat::zeros(192, 320, CV_8UC1);
   EXPECT_TRUE(Rig(Left(), black, {}).Disparities_px().empty());
 }
 
-TEST(StereoMatcher, RefinesAGuessAtEachLevel) {
+TEST(FeatureStereoMatcher, RefinesAGuessAtEachLevel) {
   constexpr double kDisparity_px = 11.8;
   const Rig rig(Left(), Right(kDisparity_px), {});
   for (int level = 0; level < 4; ++level) {
