@@ -49,7 +49,7 @@ bool IsStronger(const cv::KeyPoint& a, const cv::KeyPoint& b) {
 
 FeatureExtractor::FeatureExtractor(const FeatureExtractorOptions& options)
     : options_(options),
-      orb_(cv::ORB::create(1, static_cast<float>(ImagePyramid::kScaleFactor), options.num_levels,
+      orb_(cv::ORB::create(1, static_cast<float>(ImagePyramid::kScaleFactor), /*nlevels=*/1,
                            kBorder_px)) {}
 
 std::vector<cv::KeyPoint> FeatureExtractor::DetectLevel(const ImagePyramid& pyramid, int level,
@@ -98,26 +98,23 @@ std::vector<cv::KeyPoint> FeatureExtractor::DetectLevel(const ImagePyramid& pyra
 std::vector<Feature> FeatureExtractor::Extract(const ImagePyramid& pyramid, const cv::Mat& mask,
                                                int* num_masked) const {
   *num_masked = 0;
-  std::vector<cv::KeyPoint> keypoints;
+  std::vector<Feature> features;
   for (int level = 0; level < pyramid.num_levels(); ++level) {
-    for (cv::KeyPoint corner : DetectLevel(pyramid, level, mask, num_masked)) {
-      corner.pt.x = static_cast<float>(pyramid.FromLevel(corner.pt.x, level));
-      corner.pt.y = static_cast<float>(pyramid.FromLevel(corner.pt.y, level));
-      corner.octave = level;
-      corner.size = static_cast<float>(31 * pyramid.scale(level));
-      keypoints.push_back(corner);
+    std::vector<cv::KeyPoint> corners = DetectLevel(pyramid, level, mask, num_masked);
+    if (corners.empty()) continue;
+    // Each level by itself: left to the whole image, ORB would shrink it again, to other sizes.
+    cv::Mat descriptors;
+    orb_->compute(pyramid.level(level), corners, descriptors);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      Feature feature;
+      feature.uv_px = {pyramid.FromLevel(corners[i].pt.x, level),
+                       pyramid.FromLevel(corners[i].pt.y, level)};
+      feature.level = level;
+      feature.response = corners[i].response;
+      std::memcpy(feature.descriptor.data(), descriptors.ptr(static_cast<int>(i)),
+                  sizeof(Descriptor));
+      features.push_back(feature);
     }
-  }
-  cv::Mat descriptors;
-  orb_->compute(pyramid.level(0), keypoints, descriptors);  // drops what is too close to the border
-
-  std::vector<Feature> features(keypoints.size());
-  for (std::size_t i = 0; i < keypoints.size(); ++i) {
-    features[i].uv_px = {keypoints[i].pt.x, keypoints[i].pt.y};
-    features[i].level = keypoints[i].octave;
-    features[i].response = keypoints[i].response;
-    std::memcpy(features[i].descriptor.data(), descriptors.ptr(static_cast<int>(i)),
-                sizeof(Descriptor));
   }
   return features;
 }

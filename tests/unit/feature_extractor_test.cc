@@ -140,6 +140,26 @@ TEST(FeatureExtractor, DescriptorsOfAShiftedImageAreClose) {
   EXPECT_GT(num_same_place, 30);
 }
 
+TEST(FeatureExtractor, DescriptorsAreThoseOfTheLevelItself) {
+  constexpr int kLevel = 4;
+  FeatureExtractorOptions options;
+  options.max_features_per_cell = 100000;
+  const ImagePyramid pyramid(Texture(), options.num_levels);
+  const Extracted all = Extract(options, Texture());
+  options.num_levels = 1;
+  const Extracted alone = Extract(options, pyramid.level(kLevel));
+  std::size_t next = 0;
+  for (const Feature& feature : all.features) {
+    if (feature.level != kLevel) continue;
+    ASSERT_LT(next, alone.features.size());
+    const Feature& same = alone.features[next++];
+    EXPECT_NEAR(pyramid.FromLevel(same.uv_px.x(), kLevel), feature.uv_px.x(), 1e-3);
+    EXPECT_EQ(HammingDistance(same.descriptor, feature.descriptor), 0);
+  }
+  EXPECT_EQ(next, alone.features.size());
+  EXPECT_GT(next, 10u);
+}
+
 TEST(HammingDistance, CountsBits) {
   EXPECT_EQ(HammingDistance({0, 0, 0, 0}, {0, 0, 0, 0}), 0);
   EXPECT_EQ(HammingDistance({1, 0, 0xff, 0}, {0, 2, 0x0f, 0}), 6);
