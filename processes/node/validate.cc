@@ -279,7 +279,7 @@ std::string Validate(const state_estimate_t& message) {
 std::string Validate(const map_update_t& message) {
   Checker check(message);
   check.Range("num_parts", message.num_parts, 1, kMaxParts);
-  check.Range("part", message.part, 0, message.num_parts - 1);
+  check.Range("part", message.part, 0, static_cast<double>(message.num_parts) - 1);
   check.Count("num_frames", message.num_frames, kMaxFrames);
   for (const frame_pose_t& frame : message.frames) {
     check.Count("a frame's seq", frame.seq, kMaxSeq);
