@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "common/evaluation/people_report.h"
 #include "common/evaluation/trajectory_plot.h"
 #include "common/evaluation/trajectory_report.h"
 #include "common/util/error.h"
@@ -26,7 +27,7 @@ struct TrajectoryArguments {
   std::string plot;
 };
 
-void AddTrajectoryCommand(CLI::App* app, TrajectoryArguments* arguments) {
+CLI::App* AddTrajectoryCommand(CLI::App* app, TrajectoryArguments* arguments) {
   CLI::App* const command = app->add_subcommand("trajectory", "Errors of a camera trajectory");
   command->add_option("--estimate", arguments->estimate, "TUM or KITTI file, optical axes")
       ->required();
@@ -46,6 +47,13 @@ void AddTrajectoryCommand(CLI::App* app, TrajectoryArguments* arguments) {
                       "ground truth has poses)");
   command->add_option("--json", arguments->json, "file to write all figures to");
   command->add_option("--plot", arguments->plot, "PNG file to draw trajectories and errors into");
+  return command;
+}
+
+void WriteJson(const nlohmann::json& json, const std::string& path) {
+  std::ofstream file(path);
+  file << json.dump(1) << "\n";
+  if (!file.flush()) throw InputError(path + ": cannot be written");
 }
 
 void RunTrajectory(const TrajectoryArguments& arguments) {
@@ -66,13 +74,49 @@ void RunTrajectory(const TrajectoryArguments& arguments) {
     nlohmann::json json = ToJson(report);
     json["estimate"] = arguments.estimate;
     json["ground_truth"] = arguments.ground_truth;
-    std::ofstream file(arguments.json);
-    file << json.dump(1) << "\n";
-    if (!file.flush()) throw InputError(arguments.json + ": cannot be written");
+    WriteJson(json, arguments.json);
   }
   if (!arguments.plot.empty()) {
     WritePng(DrawEvaluation(report, arguments.estimate), arguments.plot);
   }
+}
+
+struct PeopleArguments {
+  std::string people;
+  std::string joints;
+  std::string estimate;
+  std::string ground_truth;
+  double max_distance_m = 0.5;
+  std::string json;
+};
+
+CLI::App* AddPeopleCommand(CLI::App* app, PeopleArguments* arguments) {
+  CLI::App* const command = app->add_subcommand("people", "Errors of people's joints, in 3-D");
+  command->add_option("--people", arguments->people, "people.jsonl of a map")->required();
+  command->add_option("--joints", arguments->joints, "true joints: joints_gt.json, or its .gz")
+      ->required();
+  command->add_option("--estimate", arguments->estimate, "trajectory.tum of the same map")
+      ->required();
+  command
+      ->add_option("--ground-truth", arguments->ground_truth,
+                   "TUM file of the true camera, optical axes, in the world of the true joints")
+      ->required();
+  command->add_option("--max-distance", arguments->max_distance_m, "of a match, mean of joints (m)")
+      ->capture_default_str();
+  command->add_option("--json", arguments->json, "file to write all figures to");
+  return command;
+}
+
+void RunPeople(const PeopleArguments& arguments) {
+  constexpr double kMaxTimeDifferenceS = 0.001;
+  const MatchedTrajectories cameras =
+      Associate(ReadTrajectory(arguments.estimate), ReadTrajectory(arguments.ground_truth),
+                kMaxTimeDifferenceS);
+  const PeopleReport report =
+      EvaluatePeople(ReadPeople(arguments.people), ReadTruePeople(arguments.joints), cameras,
+                     arguments.max_distance_m);
+  std::fputs(ToTable(report).c_str(), stdout);
+  if (!arguments.json.empty()) WriteJson(ToJson(report), arguments.json);
 }
 
 }  // namespace
@@ -84,10 +128,16 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", airdos::kVersion);
   app.require_subcommand(1);
   airdos::TrajectoryArguments trajectory;
-  airdos::AddTrajectoryCommand(&app, &trajectory);
+  airdos::PeopleArguments people;
+  CLI::App* const of_trajectory = airdos::AddTrajectoryCommand(&app, &trajectory);
+  airdos::AddPeopleCommand(&app, &people);
   try {
     app.parse(argc, argv);
-    airdos::RunTrajectory(trajectory);
+    if (of_trajectory->parsed()) {
+      airdos::RunTrajectory(trajectory);
+    } else {
+      airdos::RunPeople(people);
+    }
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : airdos::kExitBadInput;
   } catch (const airdos::InputError& error) {
