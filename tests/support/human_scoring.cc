@@ -211,6 +211,8 @@ double HumanScore::PairRecall() const {
 
 double HumanScore::MeanJointError() const { return Mean(joint_error_m); }
 
+double HumanScore::MedianJointError() const { return Percentile(joint_error_m, 0.5); }
+
 std::string HumanScore::TableHead() {
   return "sequence        paired% wrong% | found% false% joints swap% | err med  mean   <6m  6-12  "
          ">12 bias(<6) nees | people switch  IDF1   IDP   IDR | ms p50  p95";
