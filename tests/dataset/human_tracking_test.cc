@@ -24,6 +24,8 @@ struct Band {
   double min_idf1;
 };
 
+std::string SequenceName(const testing::TestParamInfo<Band>& info) { return info.param.sequence; }
+
 class HumanTrackingOnCrossing : public testing::TestWithParam<Band> {};
 
 TEST_P(HumanTrackingOnCrossing, StaysInTheBand) {
@@ -48,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Band{"RoadCrossing03", 0.26, 22, 0.80}, Band{"RoadCrossing04", 0.21, 20, 0.80},
                     Band{"RoadCrossing05", 0.17, 13, 0.90}, Band{"RoadCrossing06", 0.29, 105, 0.58},
                     Band{"RoadCrossing07", 0.35, 125, 0.43}),
-    [](const auto& info) { return info.param.sequence; });
+    SequenceName);
 
 }  // namespace
 }  // namespace airdos

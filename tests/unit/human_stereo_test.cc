@@ -71,7 +71,7 @@ TEST(StereoMatcher, RefusesWhatCannotBeOnePerson) {
   EXPECT_TRUE(!fit || fit->cost > StereoMatcherOptions().gate);
   // Another row.
   BodyKeypoints lower = Exact(WalkingPerson({0, 0, 5}, 0), true);
-  for (BodyKeypoint& joint : lower) joint.v_px += 8;
+  for (BodyKeypoint& joint : lower) joint.v_px += 15;
   EXPECT_GT(FitStereoPair({}, kTestCamera, left, lower)->cost, StereoMatcherOptions().gate);
 }
 
