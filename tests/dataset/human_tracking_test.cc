@@ -46,10 +46,10 @@ TEST_P(HumanTrackingOnCrossing, StaysInTheBand) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, HumanTrackingOnCrossing,
-    testing::Values(Band{"Standing01", 0.20, 16, 0.92}, Band{"Standing02", 0.38, 32, 0.80},
-                    Band{"RoadCrossing03", 0.26, 22, 0.80}, Band{"RoadCrossing04", 0.21, 20, 0.80},
-                    Band{"RoadCrossing05", 0.17, 13, 0.90}, Band{"RoadCrossing06", 0.29, 105, 0.58},
-                    Band{"RoadCrossing07", 0.35, 125, 0.43}),
+    testing::Values(Band{"Standing01", 0.15, 16, 0.92}, Band{"Standing02", 0.27, 32, 0.80},
+                    Band{"RoadCrossing03", 0.20, 22, 0.80}, Band{"RoadCrossing04", 0.17, 20, 0.80},
+                    Band{"RoadCrossing05", 0.14, 13, 0.90}, Band{"RoadCrossing06", 0.24, 105, 0.58},
+                    Band{"RoadCrossing07", 0.31, 125, 0.43}),
     SequenceName);
 
 }  // namespace

@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kMinVisibleJoints = 5;
 constexpr double kMinHeightPx = 45;
-constexpr double kMaxMatchPerHeight = 0.15;  // mean distance of joints, of the person's height
+constexpr double kMaxMatchPerHeight = 0.15;  // mean distance of joints, of the height
 
 double Percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
