@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <tuple>
 
 namespace airdos {
 namespace {
@@ -150,21 +151,21 @@ int RemoveImpossibleLimbs(const JointTriangulatorOptions& options, JointObservat
   int num_removed = 0;
   while (true) {
     std::array<int, kNumJoints> num_impossible{};
+    std::array<int, kNumJoints> num_good{};
     for (const Segment& segment : kSegments) {
       const std::size_t a = static_cast<std::size_t>(segment.joint_a);
       const std::size_t b = static_cast<std::size_t>(segment.joint_b);
       if (!(*joints)[a] || !(*joints)[b]) continue;
-      if (!IsImpossible(options, segment, *(*joints)[a], *(*joints)[b])) continue;
-      ++num_impossible[a];
-      ++num_impossible[b];
+      const bool is_bad = IsImpossible(options, segment, *(*joints)[a], *(*joints)[b]);
+      for (const std::size_t end : {a, b}) ++(is_bad ? num_impossible : num_good)[end];
     }
+    const auto badness = [&](std::size_t joint) {
+      const auto& seen = (*joints)[joint];
+      return std::tuple(num_impossible[joint], -num_good[joint], seen ? -seen->confidence : 0.0);
+    };
     std::size_t worst = 0;
-    for (std::size_t joint = 1; joint < num_impossible.size(); ++joint) {
-      const bool is_worse =
-          num_impossible[joint] > num_impossible[worst] ||
-          (num_impossible[joint] > 0 && num_impossible[joint] == num_impossible[worst] &&
-           (*joints)[joint]->confidence < (*joints)[worst]->confidence);
-      if (is_worse) worst = joint;
+    for (std::size_t joint = 1; joint < joints->size(); ++joint) {
+      if (num_impossible[joint] > 0 && badness(joint) > badness(worst)) worst = joint;
     }
     if (num_impossible[worst] == 0) return num_removed;
     (*joints)[worst].reset();

@@ -36,9 +36,9 @@ struct JointTriangulatorOptions {
   double min_limb_ratio = 0.35;         ///< shortest
   double limb_sigmas = 3;               ///< a limb is impossible only if noise does not explain it
   bool is_refined = true;               ///< measure the disparity in the images where that succeeds
-  double refined_sigma_px = 0.3;        ///< standard deviation of a refined disparity
+  double refined_sigma_px = 0.4;        ///< standard deviation of a refined disparity
   double surface_depth_m = 0.05;        ///< how far the joint lies behind the surface that is seen
-  double min_refined_confidence = 0.6;  ///< hidden joints are not on the surface that is seen
+  double min_refined_confidence = 0.4;  ///< hidden joints are not on the surface that is seen
   KeypointNoise noise;
   DisparityRefinerOptions refiner;
 };
@@ -65,7 +65,8 @@ JointObservations TriangulateLeftOnly(const JointTriangulatorOptions& options,
                                       double sigma_factor);
 
 /// Takes out joints until no limb is longer or shorter than believable, those with the most
-/// impossible limbs first (then the least confident). Returns how many went.
+/// impossible limbs first (then the fewest good ones, then the least confident). Returns how many
+/// went.
 int RemoveImpossibleLimbs(const JointTriangulatorOptions& options, JointObservations* joints);
 
 int NumObserved(const JointObservations& joints);

@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kMinVisibleJoints = 5;
 constexpr double kMinHeightPx = 45;
-constexpr double kMaxMatchPerHeight = 0.15;  // mean distance of joints, of the person's height
+constexpr double kMaxMatchPerHeight = 0.15;  // mean distance of joints, of the height
 
 double Percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
@@ -210,6 +210,8 @@ double HumanScore::PairRecall() const {
 }
 
 double HumanScore::MeanJointError() const { return Mean(joint_error_m); }
+
+double HumanScore::MedianJointError() const { return Percentile(joint_error_m, 0.5); }
 
 std::string HumanScore::TableHead() {
   return "sequence        paired% wrong% | found% false% joints swap% | err med  mean   <6m  6-12  "

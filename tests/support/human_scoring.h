@@ -35,6 +35,7 @@ struct HumanScore {
   double PairPrecision() const;
   double PairRecall() const;
   double MeanJointError() const;
+  double MedianJointError() const;
   std::string Table() const;  ///< one line; TableHead() above it
   static std::string TableHead();
 };
