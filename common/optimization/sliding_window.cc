@@ -102,6 +102,7 @@ std::vector<LandmarkId> SlidingWindowOptimizer::Adjust(const Prediction& predict
   estimate->covariance = summary.newest_covariance.value_or(UnobservedCovariance());
   estimate->num_static_landmarks = static_cast<int>(without_people.landmarks.size());
   estimate->num_static_observations = CountNewest(without_people);
+  const Se3 T_W_C_adjusted = without_people.frames.back().T_W_C;  // what the covariance is about
   bool is_predicted = estimate->num_static_observations == 0;
   if (is_predicted) {
     // Only the smoothness of the camera placed this frame; the front end's guess knows more.
@@ -124,7 +125,7 @@ std::vector<LandmarkId> SlidingWindowOptimizer::Adjust(const Prediction& predict
     estimate->trusts_people =
         KnowsCarrier() &&
         TrustsPeople(options_.trust, estimate->num_static_observations, summary, with_people,
-                     Boxminus(estimate->T_W_C_with_people, estimate->T_W_C_without_people));
+                     Boxminus(estimate->T_W_C_with_people, T_W_C_adjusted));
     if (estimate->trusts_people) estimate->covariance = *with_people.newest_covariance;
     summary = Combine(summary, with_people, estimate->trusts_people);
     is_predicted = is_predicted && !estimate->trusts_people;
