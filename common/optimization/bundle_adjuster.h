@@ -1,6 +1,8 @@
 #ifndef AIRDOS_COMMON_OPTIMIZATION_BUNDLE_ADJUSTER_H_
 #define AIRDOS_COMMON_OPTIMIZATION_BUNDLE_ADJUSTER_H_
 
+#include <optional>
+
 #include "common/optimization/bundle_problem.h"
 
 namespace airdos {
@@ -14,6 +16,7 @@ enum class MotionForm {
 
 struct BundleOptions {
   bool use_people = true;
+  bool compute_covariance = true;  ///< of the newest frame
   bool use_rigidity = true;
   bool use_motion = true;
   MotionForm motion_form = MotionForm::kVelocity;
@@ -36,15 +39,24 @@ struct BundleOptions {
   // People.
   double rigidity_sigma_m = 0.015;
   double motion_sigma_m = 0.05;
-  double velocity_change_sigma_m_s = 0.3;     ///< between consecutive frame pairs (kVelocity)
-  double part_free_rotation_sigma_rad = 0.1;  ///< about a two-point part's own axis (kSe3Parts)
+  double motion_max_gap_s = 0.5;          ///< no motion factor across a longer gap in a track
+  double person_acceleration_m_s2 = 3.0;  ///< sigma of the change of velocity (kVelocity)
+  double free_rotation_sigma_rad = 0.1;   ///< about a two-point part's own axis (kSe3Parts)
+  double segment_length_sigma_m = 0.03;   ///< of a length known from the track before
 };
+
+inline constexpr double kUnobservedSigma = 100;  // m or rad, where nothing says anything
 
 struct BundleSummary {
   bool has_converged = false;  ///< the last pass met its tolerance within its iterations
   int num_iterations = 0;      ///< of all passes
   double initial_cost = 0;     ///< half the sum of squared whitened residuals, kernels applied
   double final_cost = 0;
+  /// Marginal covariance of the newest frame's pose, from the Gauss-Newton Hessian at the solution
+  /// with kernels applied: tangent of common/geometry/se3.h, translation (m) and rotation (rad) in
+  /// C. Directions that nothing observes get kUnobservedSigma. Nothing if it was not asked for, the
+  /// frame is fixed, or the Hessian could not be factorised.
+  std::optional<Matrix6d> newest_covariance;
   int num_people = 0;  ///< with factors
   int num_rigidity = 0;
   int num_motion = 0;

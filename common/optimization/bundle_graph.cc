@@ -1,9 +1,12 @@
 #include "common/optimization/bundle_graph.h"
 
+#include <ceres/crs_matrix.h>
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 #include <cmath>
 
 #include "common/optimization/camera_acceleration_factor.h"
-#include "common/optimization/reprojection_factor.h"
 #include "common/util/check.h"
 
 namespace airdos {
@@ -43,32 +46,25 @@ void BundleGraph::AddPoses() {
   }
 }
 
-template <class Observation>
-void BundleGraph::AddReprojection(const Observation& observation, bool has_right, double* p_W,
-                                  Kind kind, bool* is_eliminated) {
-  ceres::CostFunction* cost = nullptr;
-  if (has_right) {
-    cost = new ReprojectionFactor<3>(&problem_->camera, observation.uvu_px, observation.sigma_px);
-  } else {
-    cost = new ReprojectionFactor<2>(&problem_->camera, observation.uvu_px, observation.sigma_px);
-  }
-  ceres::LossFunction* loss = kind == Kind::kLandmark ? &static_loss_ : &dynamic_loss_;
-  double* pose = pose_blocks_[static_cast<std::size_t>(observation.frame)];
-  const ceres::ResidualBlockId id = ceres_problem_.AddResidualBlock(cost, loss, pose, p_W);
-  factors_.push_back({id, kind, is_eliminated, nullptr});
-}
-
 void BundleGraph::AddLandmarks() {
   landmark_blocks_.reserve(problem_->landmarks.size());
   for (BundleProblem::Landmark& landmark : problem_->landmarks) {
     ceres_problem_.AddParameterBlock(landmark.p_W.data(), 3);
     landmark_blocks_.push_back(landmark.p_W.data());
   }
+  std::vector<bool> is_seen_by_free_frame(problem_->landmarks.size(), false);
   for (BundleProblem::LandmarkObservation& observation : problem_->observations) {
-    observation.is_eliminated = false;
-    AddReprojection(observation, observation.has_right,
-                    landmark_blocks_[static_cast<std::size_t>(observation.landmark)],
-                    Kind::kLandmark, &observation.is_eliminated);
+    const auto landmark = static_cast<std::size_t>(observation.landmark);
+    AddReprojection(&observation, observation.has_right, landmark_blocks_[landmark],
+                    Kind::kLandmark);
+    if (!problem_->frames[static_cast<std::size_t>(observation.frame)].is_fixed) {
+      is_seen_by_free_frame[landmark] = true;
+    }
+  }
+  // The others cannot influence a pose: out of the linear system with them.
+  for (std::size_t i = 0; i < landmark_blocks_.size(); ++i) {
+    const bool is_constant = problem_->landmarks[i].is_fixed || !is_seen_by_free_frame[i];
+    if (is_constant) ceres_problem_.SetParameterBlockConstant(landmark_blocks_[i]);
   }
 }
 
@@ -134,14 +130,52 @@ int BundleGraph::Eliminate() {
   return num_eliminated;
 }
 
+std::optional<Matrix6d> BundleGraph::NewestPoseCovariance() {
+  using Sparse = Eigen::SparseMatrix<double>;
+  if (pose_blocks_.empty() || problem_->frames.back().is_fixed) return std::nullopt;
+  double* newest = pose_blocks_.back();
+  std::vector<double*> all;
+  ceres_problem_.GetParameterBlocks(&all);
+  ceres::Problem::EvaluateOptions evaluate;
+  evaluate.num_threads = 1;
+  evaluate.parameter_blocks.push_back(newest);  // the first six columns
+  for (double* block : all) {
+    if (block != newest && !ceres_problem_.IsParameterBlockConstant(block)) {
+      evaluate.parameter_blocks.push_back(block);
+    }
+  }
+  ceres::CRSMatrix rows;
+  if (!ceres_problem_.Evaluate(evaluate, nullptr, nullptr, nullptr, &rows)) return std::nullopt;
+  const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> J(
+      rows.num_rows, rows.num_cols, static_cast<Eigen::Index>(rows.values.size()), rows.rows.data(),
+      rows.cols.data(), rows.values.data());
+  const Sparse J_columns = J;
+  Sparse H = J_columns.transpose() * J_columns;
+  Sparse prior(H.rows(), H.cols());
+  prior.setIdentity();
+  H += prior / (kUnobservedSigma * kUnobservedSigma);
+  const Eigen::SimplicialLDLT<Sparse> factorisation(H);
+  if (factorisation.info() != Eigen::Success) return std::nullopt;
+  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(H.rows(), 6);
+  unit.topRows<6>().setIdentity();
+  const Matrix6d covariance = factorisation.solve(unit).topRows<6>();
+  if (!covariance.allFinite()) return std::nullopt;
+  return 0.5 * (covariance + covariance.transpose());
+}
+
 void BundleGraph::WriteBack() {
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     BundleProblem::Frame& frame = problem_->frames[i];
     if (!frame.is_fixed) frame.T_W_C = FromPoseBlock(poses_[i].data());
   }
-  for (const Motion& motion : part_motions_) {
-    motion.human->motions.push_back(
-        {motion.frame, motion.part, motion.centroid_W, FromPoseBlock(motion.block)});
+  for (const Motion& motion : found_motions_) {
+    Se3 motion_W;
+    if (motion.se3 != nullptr) {
+      motion_W = FromPoseBlock(motion.se3);
+    } else {
+      motion_W.translation = motion.dt_s * Eigen::Map<const Eigen::Vector3d>(motion.velocity_m_s);
+    }
+    motion.human->motions.push_back({motion.frame, motion.part, motion.centroid_W, motion_W});
   }
 }
 

@@ -4,12 +4,15 @@
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 
+#include <array>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "common/optimization/bundle_adjuster.h"
 #include "common/optimization/bundle_problem.h"
 #include "common/optimization/pose_manifold.h"
+#include "common/optimization/reprojection_factor.h"
 
 namespace airdos {
 
@@ -29,6 +32,8 @@ class BundleGraph {
   /// Drops the factors whose error at the current values is above its threshold and marks them in
   /// the problem. Returns how many.
   int Eliminate();
+  /// See BundleSummary::newest_covariance.
+  std::optional<Matrix6d> NewestPoseCovariance();
   /// Poses and motions into the problem.
   void WriteBack();
   /// The counts of factors and of eliminated factors; the rest is left as it is.
@@ -42,26 +47,37 @@ class BundleGraph {
     bool* is_eliminated;  ///< or null
     int* num_eliminated;  ///< or null
   };
+  using JointState = BundleProblem::JointState;
+  /// What one person shows in one frame; null where a joint was not seen.
+  struct Sighting {
+    int frame = 0;
+    std::array<JointState*, kNumJoints> joints = {};
+  };
+  /// A motion to be written back: of a rigid part (se3 not null) or of the torso at a velocity.
   struct Motion {
-    int frame_km1;
-    int frame;
     BundleProblem::Human* human;
+    int frame;
     int part;
     Eigen::Vector3d centroid_W;
-    double* block;
+    const double* se3;
+    const double* velocity_m_s;
+    double dt_s;
   };
 
   void AddPoses();
   void AddLandmarks();
   void AddAccelerations();
   void AddHuman(BundleProblem::Human* human);
-  void AddJoints(BundleProblem::Human* human);
-  void AddRigidity(BundleProblem::Human* human);
-  void AddVelocities(BundleProblem::Human* human);
-  void AddPartMotions(BundleProblem::Human* human);
+  std::vector<Sighting> Sightings(BundleProblem::Human* human) const;
+  void AddRigidity(const std::vector<Sighting>& sightings, BundleProblem::Human* human);
+  void AddVelocities(const std::vector<Sighting>& sightings, BundleProblem::Human* human);
+  void AddPartMotions(const Sighting& before, const Sighting& after, BundleProblem::Human* human);
+  void AddRotationDamping(const std::vector<const JointState*>& points, double* motion);
+  void AddMotionFactor(ceres::CostFunction* cost, JointState* before, JointState* after,
+                       double* motion, BundleProblem::Human* human);
+  double StepBetween(const Sighting& before, const Sighting& after) const;
   template <class Observation>
-  void AddReprojection(const Observation& observation, bool has_right, double* p_W, Kind kind,
-                       bool* is_eliminated);
+  void AddReprojection(Observation* observation, bool has_right, double* p_W, Kind kind);
   double Threshold(Kind kind) const;
   void CountEliminated(const Factor& factor);
 
@@ -81,8 +97,25 @@ class BundleGraph {
   std::vector<double*> landmark_blocks_;
   std::vector<double*> pose_blocks_;
   std::vector<Factor> factors_;
-  std::vector<Motion> part_motions_;
+  std::vector<Motion> found_motions_;
 };
+
+template <class Observation>
+void BundleGraph::AddReprojection(Observation* observation, bool has_right, double* p_W,
+                                  Kind kind) {
+  if (observation->is_eliminated) return;
+  const StereoCamera* camera = &problem_->camera;
+  ceres::CostFunction* cost = nullptr;
+  if (has_right) {
+    cost = new ReprojectionFactor<3>(camera, observation->uvu_px, observation->sigma_px);
+  } else {
+    cost = new ReprojectionFactor<2>(camera, observation->uvu_px, observation->sigma_px);
+  }
+  ceres::LossFunction* loss = kind == Kind::kLandmark ? &static_loss_ : &dynamic_loss_;
+  double* pose = pose_blocks_[static_cast<std::size_t>(observation->frame)];
+  const ceres::ResidualBlockId id = ceres_problem_.AddResidualBlock(cost, loss, pose, p_W);
+  factors_.push_back({id, kind, &observation->is_eliminated, nullptr});
+}
 
 }  // namespace airdos
 

@@ -32,6 +32,7 @@ struct BundleProblem {
   struct Landmark {
     LandmarkId id;
     Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< start value, then result
+    bool is_fixed = false;
   };
   /// A static landmark seen in one frame (eq. 1).
   struct LandmarkObservation {
@@ -40,7 +41,7 @@ struct BundleProblem {
     Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();  ///< u_left, v, u_right
     bool has_right = true;                             ///< if false, u_right is not a measurement
     double sigma_px = 1;
-    bool is_eliminated = false;  ///< result: its error was too large
+    bool is_eliminated = false;  ///< if true at the start it stays out; result: error too large
   };
   /// Three consecutive frames, oldest first, whose camera moves smoothly.
   struct CameraAcceleration {
@@ -54,7 +55,7 @@ struct BundleProblem {
     Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< start value, then result
     Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();
     double sigma_px = 1;
-    bool is_eliminated = false;  ///< result: its reprojection was thrown out
+    bool is_eliminated = false;  ///< as above: its reprojection, not the joint
   };
   /// Result: how one rigid part (index into kParts) moved from the frame where the person was seen
   /// before to `frame`: p_k = R (p_km1 - centroid_W) + centroid_W + t, R and t in W.
@@ -69,7 +70,9 @@ struct BundleProblem {
     std::vector<JointState> joints;   ///< sorted by (frame, joint), at most one of each
     std::vector<PartMotion> motions;  ///< result, sorted by (frame, part)
     std::array<std::optional<double>, kNumSegments>
-        segment_length_m;             ///< start value (mean of the track), then result
+        segment_length_m;  ///< start value, then result; factors only where given
+    /// Lengths known from the track before this window, if it is older.
+    std::array<std::optional<double>, kNumSegments> known_length_m;
     int num_rigidity_eliminated = 0;  ///< results
     int num_motion_eliminated = 0;
   };

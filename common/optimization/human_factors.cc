@@ -29,6 +29,13 @@ bool RigidityFactor::Evaluate(double const* const* parameters, double* residuals
   return true;
 }
 
+bool LengthPriorFactor::Evaluate(double const* const* parameters, double* residuals,
+                                 double** jacobians) const {
+  residuals[0] = weight_ * (parameters[0][0] - known_m_);
+  if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = weight_;
+  return true;
+}
+
 bool VelocityFactor::Evaluate(double const* const* parameters, double* residuals,
                               double** jacobians) const {
   Point r(residuals);

@@ -26,6 +26,19 @@ class RigidityFactor final : public ceres::SizedCostFunction<1, 3, 3, 1> {
   double weight_;
 };
 
+/// The length of a segment as the track knew it before: r = (s - s_known) / sigma.
+/// Block: s (1), m.
+class LengthPriorFactor final : public ceres::SizedCostFunction<1, 1> {
+ public:
+  LengthPriorFactor(double known_m, double sigma_m) : known_m_(known_m), weight_(1 / sigma_m) {}
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  double known_m_;
+  double weight_;
+};
+
 /// Motion of a joint from one frame to the next as a translation that the joints of one person
 /// share (the default form of eq. 4, 5):
 ///

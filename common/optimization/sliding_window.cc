@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "common/optimization/camera_acceleration_factor.h"
-#include "common/optimization/pose_information.h"
 #include "common/optimization/reprojection_factor.h"
 #include "common/util/check.h"
 
@@ -28,11 +27,41 @@ int CountNewest(const BundleProblem& problem) {
                     [newest](const auto& o) { return o.frame == newest && !o.is_eliminated; }));
 }
 
+HumanTracksOptions PeopleOptions(const SlidingWindowOptions& options) {
+  HumanTracksOptions people = options.people;
+  people.window_frames = std::min(people.window_frames, options.map.window_frames);
+  return people;
+}
+
+Matrix6d UnobservedCovariance() {
+  return kUnobservedSigma * kUnobservedSigma * Matrix6d::Identity();
+}
+
+std::optional<Se3> FindPose(const BundleProblem& problem, FrameId id) {
+  for (const BundleProblem::Frame& frame : problem.frames) {
+    if (frame.id == id) return frame.T_W_C;
+  }
+  return std::nullopt;
+}
+
+/// Counts and iterations of both adjustments; cost and convergence of the trusted one.
+BundleSummary Combine(const BundleSummary& without_people, const BundleSummary& with_people,
+                      bool trusts_people) {
+  BundleSummary summary = with_people;
+  summary.num_iterations += without_people.num_iterations;
+  summary.num_reprojection_eliminated += without_people.num_reprojection_eliminated;
+  if (trusts_people) return summary;
+  summary.has_converged = without_people.has_converged;
+  summary.initial_cost = without_people.initial_cost;
+  summary.final_cost = without_people.final_cost;
+  return summary;
+}
+
 }  // namespace
 
 SlidingWindowOptimizer::SlidingWindowOptimizer(const SlidingWindowOptions& options,
                                                const StereoCamera& camera)
-    : options_(options), camera_(camera), map_(options.map) {}
+    : options_(options), camera_(camera), map_(options.map), people_(PeopleOptions(options)) {}
 
 FrameResult SlidingWindowOptimizer::Process(const FrameInput& input) {
   const bool is_first = trajectory_.empty();
@@ -41,49 +70,84 @@ FrameResult SlidingWindowOptimizer::Process(const FrameInput& input) {
   const Se3 T_W_C_start = is_first ? input.T_W_C_odometry.value_or(Se3())
                                    : PoseOf(prediction.base) * prediction.T_Cbase_C;
   map_.AddFrame(camera_, input, T_W_C_start);
+  if (options_.bundle.use_people) people_.AddFrame(camera_, input);
   if (input.T_W_C_odometry) {
     odometry_frame_ = input.id;
     T_W_C_odometry_ = input.T_W_C_odometry;
   }
 
-  BundleProblem problem = map_.BuildProblem(camera_);
-  AddAccelerations(&problem);
   FrameEstimate estimate;
   estimate.id = input.id;
-  estimate.status = FrameEstimate::Status::kFirstFrame;
   std::vector<LandmarkId> removed;
-  if (!is_first) {
-    removed = SolveStatic(&problem, &estimate);
-    UpdateTrajectory();
-    if (estimate.status == FrameEstimate::Status::kPredicted) {
-      // Only the smoothness of the camera placed this frame; the front end's guess knows more.
-      map_.SetPose(input.id, PoseOf(prediction.base) * prediction.T_Cbase_C);
-    }
+  if (is_first) {
+    estimate.status = FrameEstimate::Status::kFirstFrame;
+    estimate.T_W_C_without_people = estimate.T_W_C_with_people = T_W_C_start;
+  } else {
+    removed = Adjust(prediction, &estimate);
   }
   UpdateTrajectory();
-
   estimate.T_W_C = PoseOf(input.id);
-  estimate.T_W_C_without_people = estimate.T_W_C;
-  estimate.T_W_C_with_people = estimate.T_W_C;
   estimate.num_window_frames = static_cast<int>(map_.window().size());
-  estimate.num_static_landmarks = static_cast<int>(problem.landmarks.size());
   return {estimate, CollectChanges(std::move(removed))};
 }
 
-std::vector<LandmarkId> SlidingWindowOptimizer::SolveStatic(BundleProblem* problem,
-                                                            FrameEstimate* estimate) {
+std::vector<LandmarkId> SlidingWindowOptimizer::Adjust(const Prediction& prediction,
+                                                       FrameEstimate* estimate) {
+  BundleProblem without_people = map_.BuildProblem(camera_);
+  AddAccelerations(&without_people);
   BundleOptions options = options_.bundle;
   options.use_people = false;
-  estimate->summary = SolveBundle(options, problem);
-  estimate->num_static_observations = CountNewest(*problem);
-  estimate->covariance = NewestPoseInformation(*problem, options.huber_static).covariance;
-  if (estimate->num_static_observations == 0) {
-    estimate->status = FrameEstimate::Status::kPredicted;
-  } else {
-    estimate->status = estimate->summary.has_converged ? FrameEstimate::Status::kConverged
-                                                       : FrameEstimate::Status::kNotConverged;
+  BundleSummary& summary = estimate->summary;
+  summary = SolveBundle(options, &without_people);
+  estimate->covariance = summary.newest_covariance.value_or(UnobservedCovariance());
+  estimate->num_static_landmarks = static_cast<int>(without_people.landmarks.size());
+  estimate->num_static_observations = CountNewest(without_people);
+  const Se3 T_W_C_adjusted = without_people.frames.back().T_W_C;  // what the covariance is about
+  bool is_predicted = estimate->num_static_observations == 0;
+  if (is_predicted) {
+    // Only the smoothness of the camera placed this frame; the front end's guess knows more.
+    const Se3 T_W_Cbase =
+        FindPose(without_people, prediction.base).value_or(PoseOf(prediction.base));
+    without_people.frames.back().T_W_C = T_W_Cbase * prediction.T_Cbase_C;
   }
-  return map_.Absorb(*problem);
+  estimate->T_W_C_without_people = without_people.frames.back().T_W_C;
+  estimate->T_W_C_with_people = estimate->T_W_C_without_people;
+
+  const bool is_static_strong =
+      estimate->num_static_observations >= options_.trust.min_static_observations;
+  problem_ = ProblemWithPeople(without_people, is_static_strong);
+  if (!problem_.humans.empty()) {
+    options = options_.bundle;
+    options.compute_covariance = !is_static_strong;
+    const BundleSummary with_people = SolveBundle(options, &problem_);
+    people_.Absorb(problem_);
+    estimate->T_W_C_with_people = problem_.frames.back().T_W_C;
+    estimate->trusts_people =
+        KnowsCarrier() &&
+        TrustsPeople(options_.trust, estimate->num_static_observations, summary, with_people,
+                     Boxminus(estimate->T_W_C_with_people, T_W_C_adjusted));
+    if (estimate->trusts_people) estimate->covariance = *with_people.newest_covariance;
+    summary = Combine(summary, with_people, estimate->trusts_people);
+    is_predicted = is_predicted && !estimate->trusts_people;
+  }
+  estimate->status = is_predicted            ? FrameEstimate::Status::kPredicted
+                     : summary.has_converged ? FrameEstimate::Status::kConverged
+                                             : FrameEstimate::Status::kNotConverged;
+  return map_.Absorb(estimate->trusts_people ? problem_ : without_people);
+}
+
+BundleProblem SlidingWindowOptimizer::ProblemWithPeople(const BundleProblem& without_people,
+                                                        bool is_static_strong) const {
+  BundleProblem problem = without_people;
+  problem.humans.clear();
+  if (!options_.bundle.use_people) return problem;
+  // Where the static scene is strong people are not believed anyway, and need not move its points.
+  for (BundleProblem::Landmark& landmark : problem.landmarks) landmark.is_fixed = is_static_strong;
+  for (BundleProblem::Frame& frame : problem.frames) {
+    if (frame.id < people_.frames().front()) frame.is_fixed = true;
+  }
+  people_.AddTo(&problem);
+  return problem;
 }
 
 SlidingWindowOptimizer::Prediction SlidingWindowOptimizer::Predict(const FrameInput& input) const {
@@ -124,9 +188,13 @@ void SlidingWindowOptimizer::UpdateTrajectory() {
   while (static_cast<int>(trajectory_.size()) > kept) trajectory_.pop_front();
 }
 
+bool SlidingWindowOptimizer::KnowsCarrier() const {
+  return static_cast<int>(trajectory_.size()) >= std::max(options_.camera_motion.min_frames, 3);
+}
+
 std::optional<AccelerationSigma> SlidingWindowOptimizer::EstimateAccelerationSigma() const {
   const CameraMotionOptions& options = options_.camera_motion;
-  if (static_cast<int>(trajectory_.size()) < std::max(options.min_frames, 3)) return std::nullopt;
+  if (!KnowsCarrier()) return std::nullopt;
   std::vector<double> linear, angular;
   for (std::size_t i = 2; i < trajectory_.size(); ++i) {
     const TimedPose &a = trajectory_[i - 2], &b = trajectory_[i - 1], &c = trajectory_[i];
@@ -171,6 +239,16 @@ MapChanges SlidingWindowOptimizer::CollectChanges(std::vector<LandmarkId> remove
     const WindowMap::Frame& frame = map_.frames().at(id);
     changes.frames.push_back({id, frame.time_s, frame.T_W_C});
     for (const auto& [landmark, observation] : frame.observations) seen.insert(landmark);
+  }
+  if (!people_.frames().empty()) {
+    const auto describe = [&](FrameId id) {
+      const Se3& T_W_C = map_.frames().at(id).T_W_C;
+      for (HumanState& state : people_.Describe(id, T_W_C, problem_)) {
+        changes.humans.push_back(std::move(state));
+      }
+    };
+    if (people_.is_full()) describe(people_.frames().front());
+    describe(people_.frames().back());
   }
   for (const LandmarkId id : seen) {
     const WindowMap::Landmark& landmark = map_.landmarks().at(id);

@@ -8,6 +8,8 @@
 #include "common/geometry/stereo_camera.h"
 #include "common/optimization/bundle_adjuster.h"
 #include "common/optimization/frame_input.h"
+#include "common/optimization/human_tracks.h"
+#include "common/optimization/trust_rule.h"
 #include "common/optimization/window_map.h"
 
 namespace airdos {
@@ -27,6 +29,8 @@ struct SlidingWindowOptions {
   WindowMapOptions map;
   BundleOptions bundle;  ///< `use_people` is the switch people: on
   CameraMotionOptions camera_motion;
+  HumanTracksOptions people;  ///< its window is cut to that of the map
+  TrustOptions trust;
   double publish_moved_m = 1e-4;  ///< a landmark that moved less is not reported again
 };
 
@@ -62,6 +66,9 @@ struct MapChanges {
   std::vector<FramePose> frames;    ///< the window, newest last
   std::vector<Landmark> landmarks;  ///< new or moved, sorted by id
   std::vector<LandmarkId> removed;  ///< bad and gone, sorted
+  /// Everyone in the newest frame, and once more, refined, when that frame is the oldest of the
+  /// people's window.
+  std::vector<HumanState> humans;
 };
 
 struct FrameResult {
@@ -71,6 +78,11 @@ struct FrameResult {
 
 /// Bundle adjustment on every frame over a co-visibility window (paper, eq. 6). A plain library: no
 /// messages, no clock; the same inputs give the same answers bit by bit.
+///
+/// Each frame is adjusted twice where people are in view: over the static scene alone, and from
+/// that result again together with people (over the people's shorter window; older poses held). The
+/// rule of trust_rule.h says which camera is believed; the window goes on from it. People's joints
+/// always come from the adjustment with people, relative to its camera.
 ///
 /// The newest frame starts at the last optimized pose moved by the front end's odometry; a frame
 /// without odometry at constant velocity. A frame that sees no static landmark of the map keeps
@@ -98,8 +110,13 @@ class SlidingWindowOptimizer {
   Prediction Predict(const FrameInput& input) const;
   /// As optimized; the frame must be one of the last `history_frames`.
   const Se3& PoseOf(FrameId id) const;
-  /// Adjustment without people; fills the estimate but for its poses. Returns the bad landmarks.
-  std::vector<LandmarkId> SolveStatic(BundleProblem* problem, FrameEstimate* estimate);
+  /// Adjusts without and with people; fills the estimate and takes the trusted result into the map.
+  /// Returns the bad landmarks. `T_W_C_predicted` stands in where the static scene is not seen.
+  std::vector<LandmarkId> Adjust(const Prediction& prediction, FrameEstimate* estimate);
+  /// The adjustment together with people, from the solved one without.
+  BundleProblem ProblemWithPeople(const BundleProblem& without_people, bool is_static_strong) const;
+  /// There is enough of a trajectory to say how the camera moves.
+  bool KnowsCarrier() const;
   void AddAccelerations(BundleProblem* problem) const;
   std::optional<AccelerationSigma> EstimateAccelerationSigma() const;
   /// The poses of the window into the trajectory.
@@ -110,6 +127,8 @@ class SlidingWindowOptimizer {
   SlidingWindowOptions options_;
   StereoCamera camera_;
   WindowMap map_;
+  HumanTracks people_;
+  BundleProblem problem_;             // the last one with people
   std::deque<TimedPose> trajectory_;  // the last frames, oldest first, as optimized
   FrameId odometry_frame_;            // the last one with odometry
   std::optional<Se3> T_W_C_odometry_;

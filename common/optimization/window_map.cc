@@ -152,7 +152,7 @@ BundleProblem WindowMap::BuildProblem(const StereoCamera& camera) const {
     if (landmark == landmarks_.end() || !landmark->second.p_W || seen.size() < 2 || !is_in_window) {
       continue;
     }
-    problem.landmarks.push_back({id, *landmark->second.p_W});
+    problem.landmarks.push_back({id, *landmark->second.p_W, false});
     for (const Place& place : seen) {
       problem.observations.push_back({place.frame, static_cast<int>(problem.landmarks.size()) - 1,
                                       place.observation->uvu_px, place.observation->has_right,

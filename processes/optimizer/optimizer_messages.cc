@@ -80,6 +80,40 @@ std::int8_t ToStatus(FrameEstimate::Status status) {
   return state_estimate_t::STATUS_INVALID;
 }
 
+human_state_t ToHumanState(const HumanState& state) {
+  human_state_t message{};
+  message.track_id = state.id.value;
+  message.seq = state.frame.value;
+  message.utime = ToUtime(state.time_s);
+  const auto add = [](double value, std::vector<float>* values) {
+    values->push_back(static_cast<float>(value));
+  };
+  for (const HumanState::JointPosition& joint : state.joints) {
+    message.joint_id.push_back(static_cast<std::int8_t>(joint.joint));
+    add(joint.p_W.x(), &message.x_W_m);
+    add(joint.p_W.y(), &message.y_W_m);
+    add(joint.p_W.z(), &message.z_W_m);
+    add(joint.p_W_measured.x(), &message.x_W_measured_m);
+    add(joint.p_W_measured.y(), &message.y_W_measured_m);
+    add(joint.p_W_measured.z(), &message.z_W_measured_m);
+  }
+  message.num_joints = static_cast<std::int32_t>(state.joints.size());
+  for (const HumanState::SegmentLength& segment : state.segments) {
+    message.segment_id.push_back(static_cast<std::int8_t>(segment.segment));
+    add(segment.length_m, &message.length_m);
+  }
+  message.num_segments = static_cast<std::int32_t>(state.segments.size());
+  for (const BundleProblem::PartMotion& motion : state.motions) {
+    message.part_id.push_back(static_cast<std::int8_t>(motion.part));
+    const Eigen::Vector3f t = motion.motion_W.translation.cast<float>();
+    const Eigen::Quaternionf q = motion.motion_W.rotation.cast<float>();
+    message.translation_m.push_back({t.x(), t.y(), t.z()});
+    message.rotation.push_back({q.w(), q.x(), q.y(), q.z()});
+  }
+  message.num_motions = static_cast<std::int32_t>(state.motions.size());
+  return message;
+}
+
 /// Fills messages one after the other, each up to the size that may travel.
 class PartWriter {
  public:
@@ -199,6 +233,7 @@ std::vector<map_update_t> ToMapUpdates(const Header& header, const MapChanges& c
   for (const MapChanges::FramePose& frame : changes.frames) writer.Add(frame);
   for (const MapChanges::Landmark& landmark : changes.landmarks) writer.Add(landmark);
   for (const LandmarkId id : changes.removed) writer.Add(id);
+  for (const HumanState& human : changes.humans) writer.Add(ToHumanState(human));
   return writer.Finish();
 }
 

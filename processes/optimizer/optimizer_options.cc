@@ -38,6 +38,38 @@ void ReadCameraMotion(ConfigReader* config, CameraMotionOptions* motion) {
   config->Read("camera_motion.history_frames", &motion->history_frames, 3, 10000);
 }
 
+void ReadPeople(ConfigReader* config, SlidingWindowOptions* window) {
+  BundleOptions* bundle = &window->bundle;
+  config->Read("people.rigidity", &bundle->use_rigidity);
+  config->Read("people.motion", &bundle->use_motion);
+  bundle->motion_form = static_cast<MotionForm>(
+      config->ReadChoice("people.motion_form", {"velocity", "velocity_track", "se3_parts"}));
+  config->Read("people.window_frames", &window->people.window_frames, 2, 100);
+  config->Read("people.forget_after_frames", &window->people.forget_after_frames, 1, 1000000);
+  config->Read("people.min_frames_for_lengths", &window->people.min_frames_for_lengths, 1, 100000);
+  config->Read("people.min_disparity_px", &window->people.min_disparity_px, 0.01, 100);
+  config->Read("people.max_depth_m", &window->people.max_depth_m, 0.1, 1e4);
+  config->Read("people.huber", &bundle->huber_dynamic, kMinSigma, 1e6);
+  config->Read("people.rigidity_sigma_m", &bundle->rigidity_sigma_m, kMinSigma, 100);
+  config->Read("people.segment_length_sigma_m", &bundle->segment_length_sigma_m, kMinSigma, 100);
+  config->Read("people.motion_sigma_m", &bundle->motion_sigma_m, kMinSigma, 100);
+  config->Read("people.motion_max_gap_s", &bundle->motion_max_gap_s, 0, 100);
+  config->Read("people.person_acceleration_m_s2", &bundle->person_acceleration_m_s2, kMinSigma,
+               1e4);
+  config->Read("people.free_rotation_sigma_rad", &bundle->free_rotation_sigma_rad, kMinSigma, 100);
+  config->Read("people.eliminate_joint", &bundle->eliminate_joint, kMinSigma, 1e9);
+  config->Read("people.eliminate_rigidity", &bundle->eliminate_rigidity, kMinSigma, 1e9);
+  config->Read("people.eliminate_motion", &bundle->eliminate_motion, kMinSigma, 1e9);
+}
+
+void ReadTrust(ConfigReader* config, TrustOptions* trust) {
+  config->Read("trust.min_static_observations", &trust->min_static_observations, 0, 100000);
+  config->Read("trust.min_motion_factors", &trust->min_motion_factors, 1, 1000000);
+  config->Read("trust.max_eliminated_share", &trust->max_eliminated_share, 0, 1);
+  config->Read("trust.max_relative_sigma", &trust->max_relative_sigma, 0, 1);
+  config->Read("trust.max_shift_chi2", &trust->max_shift_chi2, 0, 1e12);
+}
+
 }  // namespace
 
 OptimizerOptions ReadOptimizerOptions(ConfigReader* config) {
@@ -47,6 +79,8 @@ OptimizerOptions ReadOptimizerOptions(ConfigReader* config) {
   ReadMap(config, &options.window.map);
   ReadSolver(config, &options.window.bundle);
   ReadCameraMotion(config, &options.window.camera_motion);
+  ReadPeople(config, &options.window);
+  ReadTrust(config, &options.window.trust);
   config->Read("output.publish_moved_m", &options.window.publish_moved_m, 0, 1);
   options.window.bundle.use_people = options.people == PeopleMode::kOn;
   return options;

@@ -152,6 +152,13 @@ TEST(RigidityFactorTest, ValueAndDerivatives) {
   EXPECT_EQ(J, (std::vector<double>{0, 0, 0}));
 }
 
+TEST(LengthPriorFactorTest, ValueAndDerivatives) {
+  const LengthPriorFactor factor(0.4, 0.05);
+  EXPECT_EQ(Residual(factor, {{0.4}})[0], 0);
+  EXPECT_NEAR(Residual(factor, {{0.5}})[0], 2, 1e-10);
+  ExpectDerivativesMatch(factor, {{0.47}});
+}
+
 TEST(VelocityFactorTest, ValueAndDerivatives) {
   const VelocityFactor factor(0.1, 0.05);
   const Eigen::Vector3d p(1, 2, 3), v(1, 0, -2);

@@ -1,0 +1,127 @@
+#include "common/optimization/human_tracks.h"
+
+#include <iterator>
+#include <utility>
+
+namespace airdos {
+
+void HumanTracks::AddFrame(const StereoCamera& camera, const FrameInput& input) {
+  frames_.push_back(input.id);
+  times_s_[input.id] = input.time_s;
+  for (const HumanObservation& human : input.humans) {
+    std::map<int, Joint> joints;
+    for (const JointObservation& seen : human.joints) {
+      const Eigen::Vector3d& uvu_px = seen.uvu_px;
+      if (uvu_px.x() - uvu_px.z() < options_.min_disparity_px) continue;
+      const auto p_C = camera.Triangulate(uvu_px.x(), uvu_px.y(), uvu_px.z());
+      if (!p_C || p_C->z() > options_.max_depth_m) continue;
+      joints[seen.joint] = {uvu_px, seen.sigma_px, *p_C, *p_C, false};
+    }
+    if (joints.empty()) continue;
+    Person& person = people_[human.id];
+    person.sightings[input.id] = std::move(joints);
+    person.last_seen = input.id;
+    ++person.num_sightings;
+  }
+  if (static_cast<int>(frames_.size()) > options_.window_frames) {
+    for (auto& [id, person] : people_) person.sightings.erase(frames_.front());
+    times_s_.erase(frames_.front());
+    frames_.erase(frames_.begin());
+  }
+  for (auto it = people_.begin(); it != people_.end();) {
+    const bool is_old = input.id.value - it->second.last_seen.value > options_.forget_after_frames;
+    it = is_old ? people_.erase(it) : std::next(it);
+  }
+}
+
+std::optional<double> HumanTracks::MeanLength(const Person& person, std::size_t segment) const {
+  double sum_m = 0;
+  int num = 0;
+  for (const auto& [frame, joints] : person.sightings) {
+    const auto a = joints.find(kSegments[segment].joint_a);
+    const auto b = joints.find(kSegments[segment].joint_b);
+    if (a == joints.end() || b == joints.end()) continue;
+    sum_m += (a->second.p_C - b->second.p_C).norm();
+    ++num;
+  }
+  if (num == 0) return std::nullopt;
+  return sum_m / num;
+}
+
+void HumanTracks::AddTo(BundleProblem* problem) const {
+  std::map<FrameId, int> index;
+  for (std::size_t i = 0; i < problem->frames.size(); ++i) {
+    index[problem->frames[i].id] = static_cast<int>(i);
+  }
+  problem->humans.clear();
+  for (const auto& [id, person] : people_) {
+    if (person.sightings.empty()) continue;
+    BundleProblem::Human human;
+    human.id = id;
+    for (const auto& [frame_id, joints] : person.sightings) {
+      const int frame = index.at(frame_id);
+      const Se3& T_W_C = problem->frames[static_cast<std::size_t>(frame)].T_W_C;
+      for (const auto& [joint, seen] : joints) {
+        human.joints.push_back({frame, joint, T_W_C * seen.p_C, seen.uvu_px, seen.sigma_px, false});
+      }
+    }
+    const bool is_known = person.num_sightings >= options_.min_frames_for_lengths;
+    for (std::size_t segment = 0; segment < kNumSegments; ++segment) {
+      const std::optional<double> mean_m = MeanLength(person, segment);
+      if (!mean_m) continue;
+      if (is_known) human.known_length_m[segment] = person.length_m[segment];
+      human.segment_length_m[segment] = human.known_length_m[segment].value_or(*mean_m);
+    }
+    problem->humans.push_back(std::move(human));
+  }
+}
+
+void HumanTracks::Absorb(const BundleProblem& problem) {
+  for (const BundleProblem::Human& human : problem.humans) {
+    Person& person = people_.at(human.id);
+    for (const BundleProblem::JointState& state : human.joints) {
+      const BundleProblem::Frame& frame = problem.frames[static_cast<std::size_t>(state.frame)];
+      Joint& joint = person.sightings.at(frame.id).at(state.joint);
+      joint.is_eliminated = state.is_eliminated;
+      // A joint that lost its measurement starts from it again next time.
+      joint.p_C = state.is_eliminated ? joint.p_C_measured : frame.T_W_C.inverse() * state.p_W;
+    }
+    for (std::size_t segment = 0; segment < kNumSegments; ++segment) {
+      if (human.segment_length_m[segment]) {
+        person.length_m[segment] = human.segment_length_m[segment];
+      }
+    }
+  }
+}
+
+std::vector<HumanState> HumanTracks::Describe(FrameId frame, const Se3& T_W_C,
+                                              const BundleProblem& problem) const {
+  std::vector<HumanState> states;
+  for (const auto& [id, person] : people_) {
+    const auto sighting = person.sightings.find(frame);
+    if (sighting == person.sightings.end()) continue;
+    HumanState state;
+    state.id = id;
+    state.frame = frame;
+    state.time_s = times_s_.at(frame);
+    for (const auto& [joint, seen] : sighting->second) {
+      if (seen.is_eliminated) continue;
+      state.joints.push_back({joint, T_W_C * seen.p_C, T_W_C * seen.p_C_measured});
+    }
+    for (std::size_t segment = 0; segment < kNumSegments; ++segment) {
+      if (!person.length_m[segment]) continue;
+      state.segments.push_back({static_cast<int>(segment), *person.length_m[segment]});
+    }
+    for (const BundleProblem::Human& human : problem.humans) {
+      if (human.id != id) continue;
+      for (const BundleProblem::PartMotion& motion : human.motions) {
+        const BundleProblem::Frame& at = problem.frames[static_cast<std::size_t>(motion.frame)];
+        if (at.id == frame) state.motions.push_back(motion);
+      }
+    }
+    states.push_back(std::move(state));
+  }
+  return states;
+}
+
+}  // namespace airdos
