@@ -213,15 +213,17 @@ TEST_P(KilledProcessTest, OthersGoOnAndSayWhatTheyMiss) {
   const std::int64_t num_before = product == products.end() ? 0 : NumRecorded(product->second);
   EXPECT_EQ(player->Wait(kRunDeadline_s), 0) << player->Output();
   WaitForLastFrame();
-  if (product != products.end()) EXPECT_GT(NumRecorded(product->second), num_before);
+  if (product != products.end()) {
+    EXPECT_GT(NumRecorded(product->second), num_before);
+  }
   StopAll();
 }
 
 INSTANTIATE_TEST_SUITE_P(EachProcess, KilledProcessTest,
                          testing::Values("airdos-frontend", "airdos-human-tracker",
                                          "airdos-optimizer", "airdos-map-recorder"),
-                         [](const auto& info) {
-                           std::string name = info.param;
+                         [](const auto& instance) {
+                           std::string name = instance.param;
                            for (char& c : name) c = c == '-' ? '_' : c;
                            return name;
                          });
