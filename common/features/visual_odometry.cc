@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "common/features/patch.h"
 #include "common/util/check.h"
@@ -196,9 +197,19 @@ VisualOdometry::Hypothesis VisualOdometry::TrackFrom(const View& view, const Se3
 std::optional<Se3> VisualOdometry::Relocate(const View& view) const {
   constexpr double kRansacError_px = 4;
   if (recent_.empty()) return std::nullopt;
+<<<<<<< HEAD
   const std::size_t num_back = std::min<std::size_t>(recent_.size(), kRecentFrames);
   const FrameId oldest = recent_[recent_.size() - num_back].first;
   std::vector<std::pair<LandmarkId, const LocalLandmark*>> candidates;
+=======
+  // The last frames that saw anything, however long ago: after a blackout they are all there is.
+  std::set<FrameId> frames;
+  for (const auto& [id, landmark] : map_.landmarks()) frames.insert(landmark.last_seen);
+  while (frames.size() > static_cast<std::size_t>(kRecentFrames)) frames.erase(frames.begin());
+  if (frames.empty()) return std::nullopt;
+  const FrameId oldest = *frames.begin();
+  std::vector<std::pair<LandmarkId, const MapLandmark*>> candidates;
+>>>>>>> wt_g
   for (const auto& [id, landmark] : map_.landmarks()) {
     if (!(landmark.last_seen < oldest)) candidates.emplace_back(id, &landmark);
   }
@@ -242,6 +253,12 @@ std::vector<LandmarkSighting> VisualOdometry::Sight(const View& view,
   for (const VisibleLandmark& visible :
        FindVisible(map_, view.camera, hypothesis.T_W_C, view.left->num_levels())) {
     if (IsMasked(view.images.mask, visible.uv_px)) continue;
+<<<<<<< HEAD
+=======
+    // Of a pose that nothing supports it cannot be said what should be in view.
+    if (hypothesis.num_inliers >= options_.min_inliers_weak)
+      ++map_.landmarks().at(visible.id).num_expected;
+>>>>>>> wt_g
     const auto match = feature_of.find(visible.id);
     candidates.push_back({visible, match == feature_of.end() ? nullptr : match->second});
   }

@@ -158,6 +158,25 @@ TEST(VisualOdometry, BlackFramesCoastAndTrackingComesBack) {
   }
 }
 
+TEST(VisualOdometry, AfterALongBlackoutThePoseIsFoundAgain) {
+  // 2.5 s without a picture, then the view of frame 12 again: by then the prediction is far off,
+  // and only the descriptors of what was seen before can tell the pose.
+  constexpr int kFirstBlack = 13;
+  constexpr int kFirstAgain = 38;
+  VisualOdometry odometry({});
+  for (int k = 0; k < kFirstAgain + 3; ++k) {
+    const bool is_black = k >= kFirstBlack && k < kFirstAgain;
+    const int place = std::min(k, kFirstBlack - 1);
+    StereoImages images = is_black ? BlackFrame(place) : Frame(place);
+    images.id = FrameId{k};
+    images.time_s = kFrameStep_s * k;
+    const OdometryFrame frame = odometry.Process(kCamera, images);
+    if (k < kFirstAgain) continue;
+    EXPECT_EQ(frame.state, TrackingState::kTracking) << "frame " << k;
+    ExpectNear(frame, Truth(kFirstBlack - 1), k);
+  }
+}
+
 TEST(VisualOdometry, CoastingGoesOnAsBefore) {
   VisualOdometry odometry({});
   Se3 T_W_C_8;
