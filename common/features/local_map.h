@@ -28,7 +28,7 @@ struct LocalLandmark {
   Eigen::Vector2d reference_uv_px = Eigen::Vector2d::Zero();
   int reference_level = 0;
 
-  Descriptor descriptor{};  ///< as last seen
+  Descriptor descriptor{};  ///< as when it was created
   FrameId last_seen;
   int num_seen = 0;
   int num_expected = 0;  ///< frames in which it lay in view and off people

@@ -120,6 +120,11 @@ OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoIm
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (estimate.is_inlier[i]) inliers.push_back(frame.sightings[i]);
   }
+  if (frame.state == TrackingState::kCoasting) {
+    frame.T_W_C = predicted;
+    inliers.clear();
+  }
+  num_coasted_ = frame.state == TrackingState::kCoasting ? num_coasted_ + 1 : 0;
   frame.sightings = KeepSpread(std::move(inliers));
 
   UpdateLandmarks(view, frame.T_W_C, frame.sightings);
@@ -139,6 +144,7 @@ OdometryFrame VisualOdometry::Coast(FrameId id, double time_s) {
   frame.T_W_C = predicted;
   frame.prior_sigma_position_m = prior.sigma_position_m;
   frame.prior_sigma_orientation_rad = prior.sigma_orientation_rad;
+  ++num_coasted_;
   Remember(id, time_s, predicted);
   return frame;
 }
@@ -168,6 +174,9 @@ PosePrior VisualOdometry::Prior(const Se3& T_W_C_predicted) const {
   prior.sigma_orientation_rad =
       std::clamp(3 * MedianOfNorms(innovations_, 3), options_.prior_min_sigma_orientation_rad,
                  options_.prior_max_sigma_orientation_rad);
+  // A prediction from predictions is worth less with each.
+  prior.sigma_position_m *= 1 + num_coasted_;
+  prior.sigma_orientation_rad *= 1 + num_coasted_;
   return prior;
 }
 
@@ -197,19 +206,13 @@ VisualOdometry::Hypothesis VisualOdometry::TrackFrom(const View& view, const Se3
 std::optional<Se3> VisualOdometry::Relocate(const View& view) const {
   constexpr double kRansacError_px = 4;
   if (recent_.empty()) return std::nullopt;
-<<<<<<< HEAD
-  const std::size_t num_back = std::min<std::size_t>(recent_.size(), kRecentFrames);
-  const FrameId oldest = recent_[recent_.size() - num_back].first;
-  std::vector<std::pair<LandmarkId, const LocalLandmark*>> candidates;
-=======
   // The last frames that saw anything, however long ago: after a blackout they are all there is.
   std::set<FrameId> frames;
   for (const auto& [id, landmark] : map_.landmarks()) frames.insert(landmark.last_seen);
   while (frames.size() > static_cast<std::size_t>(kRecentFrames)) frames.erase(frames.begin());
   if (frames.empty()) return std::nullopt;
   const FrameId oldest = *frames.begin();
-  std::vector<std::pair<LandmarkId, const MapLandmark*>> candidates;
->>>>>>> wt_g
+  std::vector<std::pair<LandmarkId, const LocalLandmark*>> candidates;
   for (const auto& [id, landmark] : map_.landmarks()) {
     if (!(landmark.last_seen < oldest)) candidates.emplace_back(id, &landmark);
   }
@@ -253,12 +256,6 @@ std::vector<LandmarkSighting> VisualOdometry::Sight(const View& view,
   for (const VisibleLandmark& visible :
        FindVisible(map_, view.camera, hypothesis.T_W_C, view.left->num_levels())) {
     if (IsMasked(view.images.mask, visible.uv_px)) continue;
-<<<<<<< HEAD
-=======
-    // Of a pose that nothing supports it cannot be said what should be in view.
-    if (hypothesis.num_inliers >= options_.min_inliers_weak)
-      ++map_.landmarks().at(visible.id).num_expected;
->>>>>>> wt_g
     const auto match = feature_of.find(visible.id);
     candidates.push_back({visible, match == feature_of.end() ? nullptr : match->second});
   }
@@ -274,7 +271,9 @@ std::vector<LandmarkSighting> VisualOdometry::Sight(const View& view,
   std::vector<LandmarkSighting> sightings;
   for (const Candidate& candidate : candidates) {
     if (!cells.Take(candidate.visible.uv_px, kMaxTriedPerCell)) continue;
-    ++map_.landmarks().at(candidate.visible.id).num_expected;
+    // Of a pose that nothing supports it cannot be said what should be in view.
+    if (hypothesis.num_inliers >= options_.min_inliers_weak)
+      ++map_.landmarks().at(candidate.visible.id).num_expected;
     if (const auto sighting = SightOne(view, candidate.visible, candidate.feature))
       sightings.push_back(*sighting);
   }

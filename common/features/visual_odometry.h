@@ -117,6 +117,7 @@ class VisualOdometry {
   FeatureExtractor extractor_;
   LocalMap map_;
   std::deque<std::pair<FrameId, double>> recent_;  // frame and time, newest last
+  int num_coasted_ = 0;                            // frames in a row
   std::deque<Vector6d> innovations_;  // pose minus prediction of the last tracked frames
 };
 
