@@ -134,14 +134,17 @@ std::optional<Matrix6d> BundleGraph::NewestPoseCovariance() {
   using Sparse = Eigen::SparseMatrix<double>;
   if (pose_blocks_.empty() || problem_->frames.back().is_fixed) return std::nullopt;
   double* newest = pose_blocks_.back();
-  std::vector<double*> all;
-  ceres_problem_.GetParameterBlocks(&all);
   ceres::Problem::EvaluateOptions evaluate;
   evaluate.num_threads = 1;
   evaluate.parameter_blocks.push_back(newest);  // the first six columns
-  for (double* block : all) {
-    if (block != newest && !ceres_problem_.IsParameterBlockConstant(block)) {
-      evaluate.parameter_blocks.push_back(block);
+  // Not ceres_problem_.GetParameterBlocks(): that is in order of addresses, and the last bits of
+  // the result would depend on where the memory happens to lie.
+  for (const std::vector<double*>* blocks : {&pose_blocks_, &landmark_blocks_, &people_blocks_}) {
+    for (double* block : *blocks) {
+      if (block != newest && ceres_problem_.HasParameterBlock(block) &&
+          !ceres_problem_.IsParameterBlockConstant(block)) {
+        evaluate.parameter_blocks.push_back(block);
+      }
     }
   }
   ceres::CRSMatrix rows;

@@ -95,6 +95,7 @@ class BundleGraph {
   ceres::Problem ceres_problem_;
 
   std::vector<double*> landmark_blocks_;
+  std::vector<double*> people_blocks_;  // in the order in which they were added
   std::vector<double*> pose_blocks_;
   std::vector<Factor> factors_;
   std::vector<Motion> found_motions_;

@@ -46,6 +46,7 @@ void BundleGraph::AddHuman(BundleProblem::Human* human) {
   if (human->joints.empty()) return;
   ++summary_.num_people;
   for (JointState& joint : human->joints) {
+    people_blocks_.push_back(joint.p_W.data());
     AddReprojection(&joint, /*has_right=*/true, joint.p_W.data(), Kind::kJoint);
   }
   const std::vector<Sighting> sightings = Sightings(human);
@@ -97,6 +98,7 @@ void BundleGraph::AddRigidity(const std::vector<Sighting>& sightings, BundleProb
       ++num_factors;
     }
     summary_.num_rigidity += num_factors;
+    people_blocks_.push_back(&*length_m);
     if (num_factors > 0 && human->known_length_m[segment]) {
       ceres_problem_.AddResidualBlock(
           new LengthPriorFactor(*human->known_length_m[segment], options_.segment_length_sigma_m),
@@ -129,6 +131,7 @@ void BundleGraph::AddVelocities(const std::vector<Sighting>& sightings,
     if (!is_whole_track || velocity == nullptr) {
       velocities_.push_back(MeanStep(pairs) / step_s);
       velocity = velocities_.back().data();
+      people_blocks_.push_back(velocity);
       if (velocity_before != nullptr) {
         const double sigma_m_s = options_.person_acceleration_m_s2 * 0.5 * (step_s + step_before_s);
         ceres_problem_.AddResidualBlock(new VelocitySmoothnessFactor(sigma_m_s), nullptr,
@@ -155,6 +158,7 @@ void BundleGraph::AddPartMotions(const Sighting& before, const Sighting& after,
     const Eigen::Vector3d centroid_W = Centroid(pairs);
     motions_.push_back(ToPoseBlock({Eigen::Quaterniond::Identity(), MeanStep(pairs)}));
     double* motion = motions_.back().data();
+    people_blocks_.push_back(motion);
     ceres_problem_.AddParameterBlock(motion, kPoseBlockSize, &manifold_);
     std::vector<const JointState*> points;
     for (const auto& [joint_before, joint_after] : pairs) {

@@ -111,7 +111,7 @@ class SlidingWindowOptimizer {
   /// As optimized; the frame must be one of the last `history_frames`.
   const Se3& PoseOf(FrameId id) const;
   /// Adjusts without and with people; fills the estimate and takes the trusted result into the map.
-  /// Returns the bad landmarks. `T_W_C_predicted` stands in where the static scene is not seen.
+  /// `prediction` stands in where the newest frame sees nothing static. Returns the bad landmarks.
   std::vector<LandmarkId> Adjust(const Prediction& prediction, FrameEstimate* estimate);
   /// The adjustment together with people, from the solved one without.
   BundleProblem ProblemWithPeople(const BundleProblem& without_people, bool is_static_strong) const;

@@ -14,7 +14,7 @@ struct TrustOptions {
   /// ... of which no more than this share was eliminated ...
   double max_eliminated_share = 0.25;
   /// ... make the position at least so much more certain: sigma with people / sigma without ...
-  double max_relative_sigma = 0.8;
+  double max_relative_sigma = 0.9;
   /// ... and must not move the pose further than its covariance allows: bound of the squared
   /// Mahalanobis distance, chi-squared with 6 degrees of freedom, one in a thousand.
   double max_shift_chi2 = 22.5;

@@ -76,7 +76,7 @@ TEST(SlidingWindowTest, PeopleCarryTheCameraWhereTheStaticSceneIsGone) {
     options.num_frames = 18;
     options.num_people = 12;
     options.max_static_per_frame = 100;
-    options.joint_sigma_px = 0.5;
+    options.joint_sigma_px = 0.3;
     SyntheticScene scene = MakeSyntheticScene(options);
     std::mt19937 generator(seed);
     std::normal_distribution<double> normal(0, 0.1);
@@ -212,7 +212,7 @@ TEST(TrustRuleTest, EachConditionCounts) {
   other.num_motion_eliminated = 30;
   EXPECT_FALSE(TrustsPeople(options, 10, without, other, shift));  // they disagree
   other = with;
-  other.newest_covariance = 0.009 * Matrix6d::Identity();
+  other.newest_covariance = 0.0095 * Matrix6d::Identity();
   EXPECT_FALSE(TrustsPeople(options, 10, without, other, shift));  // they do not help
   other.newest_covariance.reset();
   EXPECT_FALSE(TrustsPeople(options, 10, without, other, shift));
