@@ -167,7 +167,7 @@ TEST(VisualOdometry, AfterALongBlackoutThePoseIsFoundAgain) {
   for (int k = 0; k < kFirstAgain + 3; ++k) {
     const bool is_black = k >= kFirstBlack && k < kFirstAgain;
     const int place = std::min(k, kFirstBlack - 1);
-    StereoImages images = is_black ? BlackFrame(place) : Frame(place);
+    StereoImagePair images = is_black ? BlackFrame(place) : Frame(place);
     images.id = FrameId{k};
     images.time_s = kFrameStep_s * k;
     const OdometryFrame frame = odometry.Process(kCamera, images);

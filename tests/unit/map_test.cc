@@ -242,7 +242,7 @@ TEST_F(MapTest, AKillLosesNothingThatWasAppended) {
   if (child == 0) {
     MapFileWriter writer(path_);
     writer.Append(HeadChunk(5, "killed"));
-    MapChanges changes;
+    MapDelta changes;
     changes.SetFrame({1}, LiveFrame(1, 1));
     writer.Append(changes.ToChunk());
     kill(getpid(), SIGKILL);
