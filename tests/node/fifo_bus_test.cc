@@ -23,8 +23,8 @@ std::vector<std::unique_ptr<TextNode>> MakeChain() {
                                              "FEATURES", "POSE"));
   nodes.push_back(
       std::make_unique<TextNode>("people", std::vector<std::string>{"IMAGE", "KEYS"}, "PEOPLE"));
-  nodes.push_back(
-      std::make_unique<TextNode>("solver", std::vector<std::string>{"FEATURES", "PEOPLE"}, "POSE"));
+  nodes.push_back(std::make_unique<TextNode>(
+      "a_solver", std::vector<std::string>{"FEATURES", "PEOPLE"}, "POSE"));
   nodes.push_back(
       std::make_unique<TextNode>("a_listener", std::vector<std::string>{"POSE"}, "MAP"));
   return nodes;
@@ -130,7 +130,7 @@ TEST(FifoBusTest, FinishCompletesUpstreamFirst) {
   const std::string people = TextOf(traffic.at("PEOPLE")[4]);
   EXPECT_NE(features.find("IMAGE4,-,"), std::string::npos) << features;
   EXPECT_NE(people.find("IMAGE4,-,"), std::string::npos) << people;
-  EXPECT_EQ(TextOf(traffic.at("POSE")[4]), "solver(" + features + "," + people + ",)");
+  EXPECT_EQ(TextOf(traffic.at("POSE")[4]), "a_solver(" + features + "," + people + ",)");
 }
 
 TEST(FifoBusTest, FinishEndsWhereNodesWaitForEachOther) {

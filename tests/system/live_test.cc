@@ -189,7 +189,7 @@ TEST_P(KilledProcessTest, OthersGoOnAndSayWhatTheyMiss) {
   const std::map<std::string, std::string> products{
       {"airdos-frontend", channel::kStaticFeatures},
       {"airdos-human-tracker", channel::kHumanObservations},
-      {"airdos-optimizer", channel::kStateEstimate}};
+      {"airdos-optimizer", channel::kMapUpdate}};  // which the frontend waits for
   ASSERT_NO_FATAL_FAILURE(StartAll("0.5"));
   Process* player = Start("lcm-logplayer", {"-s", "0.5", log_});
   ASSERT_TRUE(
@@ -201,11 +201,11 @@ TEST_P(KilledProcessTest, OthersGoOnAndSayWhatTheyMiss) {
   if (product != products.end()) {
     const auto somebody_misses_it = [&] {
       for (const auto& [program, process] : processes_) {
-        if (process->HasSaid("nothing on ") && process->HasSaid(product->second)) return true;
+        if (process->HasSaid("nothing on " + product->second)) return true;
       }
       return false;
     };
-    EXPECT_TRUE(PollUntil(somebody_misses_it, kRunDeadline_s));
+    EXPECT_TRUE(PollUntil(somebody_misses_it, kStartDeadline_s));
   }
   std::filesystem::remove(folder_ + victim + ".txt");
   StartNode(victim, "0.5");
