@@ -4,6 +4,7 @@
 #include <ceres/solver.h>
 #include <ceres/types.h>
 
+#include <algorithm>
 #include <initializer_list>
 #include <memory>
 
@@ -56,10 +57,10 @@ double Minimize(int max_iterations, ceres::Solver::Options solver, BundleGraph* 
   solver.max_num_iterations = max_iterations;
   ceres::Solver::Summary report;
   ceres::Solve(solver, &graph->ceres_problem(), &report);
-  summary->final_cost = report.final_cost;
+  summary->final_cost = std::max(report.final_cost, 0.0);  // Ceres says -1 where it gave up
   summary->has_converged = report.termination_type == ceres::CONVERGENCE;
   summary->num_iterations += report.num_successful_steps + report.num_unsuccessful_steps;
-  return report.initial_cost;
+  return std::max(report.initial_cost, 0.0);
 }
 
 }  // namespace

@@ -4,6 +4,14 @@
 #include <utility>
 
 namespace airdos {
+namespace {
+
+// A length is free of sign in the solver: two joints that a bad disparity tore apart, or that share
+// a pixel, can drive it to anything. Beyond these it is no segment of a body.
+constexpr double kShortest_m = 0.02;
+constexpr double kLongest_m = 1.5;
+
+}  // namespace
 
 void HumanTracks::AddFrame(const StereoCamera& camera, const FrameInput& input) {
   frames_.push_back(input.id);
@@ -81,14 +89,17 @@ void HumanTracks::Absorb(const BundleProblem& problem) {
     Person& person = people_.at(human.id);
     for (const BundleProblem::JointState& state : human.joints) {
       const BundleProblem::Frame& frame = problem.frames[static_cast<std::size_t>(state.frame)];
+      const Eigen::Vector3d p_C = frame.T_W_C.inverse() * state.p_W;
+      const bool is_possible = p_C.allFinite() && p_C.z() > 0 && p_C.z() < 2 * options_.max_depth_m;
       Joint& joint = person.sightings.at(frame.id).at(state.joint);
-      joint.is_eliminated = state.is_eliminated;
+      joint.is_eliminated = state.is_eliminated || !is_possible;
       // A joint that lost its measurement starts from it again next time.
-      joint.p_C = state.is_eliminated ? joint.p_C_measured : frame.T_W_C.inverse() * state.p_W;
+      joint.p_C = joint.is_eliminated ? joint.p_C_measured : p_C;
     }
     for (std::size_t segment = 0; segment < kNumSegments; ++segment) {
-      if (human.segment_length_m[segment]) {
-        person.length_m[segment] = human.segment_length_m[segment];
+      const std::optional<double>& length_m = human.segment_length_m[segment];
+      if (length_m && *length_m > kShortest_m && *length_m < kLongest_m) {
+        person.length_m[segment] = length_m;
       }
     }
   }

@@ -52,7 +52,8 @@ class HumanTracks {
 
   /// Fills `problem->humans` from the newest frames, which `problem->frames` must hold.
   void AddTo(BundleProblem* problem) const;
-  /// Takes joints and lengths back from a solved problem: the joints relative to its cameras.
+  /// Takes joints and lengths back from a solved problem: the joints relative to its
+  /// cameras. Lengths and joints that no body has are not taken.
   void Absorb(const BundleProblem& problem);
 
   /// Everyone seen in `frame` (one of frames()), with `T_W_C` as its camera and the motions of

@@ -184,6 +184,24 @@ TEST(OptimizerNodeTest, EachFrameGetsOneEstimateAndAWholeUpdate) {
   EXPECT_EQ(seqs.size(), scene.frames.size());
 }
 
+TEST(OptimizerNodeTest, WhatItSaysIsNeverRejected) {
+  // One impossible person must not cost the reader the whole update.
+  SyntheticSceneOptions options;
+  options.num_people = 8;
+  options.joint_sigma_px = 6;
+  const SyntheticScene scene = MakeSyntheticScene(options);
+  const std::vector<Envelope> output = RunNode(scene, "on");
+  for (const auto& estimate : Take<state_estimate_t>(output, channel::kStateEstimate)) {
+    EXPECT_EQ(Validate(estimate), "");
+  }
+  for (const map_update_t& update : Take<map_update_t>(output, channel::kMapUpdate)) {
+    EXPECT_EQ(Validate(update), "");
+    for (const human_state_t& human : update.humans) {
+      for (const float length_m : human.length_m) EXPECT_GT(length_m, 0);
+    }
+  }
+}
+
 TEST(OptimizerNodeTest, LargeUpdatesAreSplit) {
   MapChanges changes;
   changes.frames.resize(12);
