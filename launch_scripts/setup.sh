@@ -17,7 +17,7 @@ AIRDOS_PACKAGES=(
   libopencv-dev libeigen3-dev libceres-dev libyaml-cpp-dev libzstd-dev libssl-dev libcli11-dev nlohmann-json3-dev
   zlib1g-dev libgtest-dev libgmock-dev libbenchmark-dev
   default-jdk-headless default-jre
-  iproute2 xvfb xauth
+  iproute2 xvfb xauth jq
 )
 
 is_installed() { [[ $(dpkg-query -W -f='${db:Status-Status}' "$1" 2> /dev/null) == installed ]]; }

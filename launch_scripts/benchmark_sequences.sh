@@ -1,0 +1,77 @@
+#!/bin/bash
+# Runs every sequence with people off, mask_only and on, and prints a table: frames posed, errors, ms a frame.
+#
+# Usage: launch_scripts/benchmark_sequences.sh FOLDER… [--modes "off mask_only on"] [--run-dir FOLDER] [--set P:S.K=V]…
+#   FOLDER…           sequences, each in TartanAir-Shibuya or KITTI odometry layout
+#   --modes LIST      of off, mask_only, on (default: all three)
+#   --run-dir FOLDER  where maps, trajectories and pictures go (default logs/runs/benchmark)
+#   --set P:S.K=V     of airdos-replay: another value in process P's configuration (again for more)
+#   --help            this text
+#
+# ATE: root mean square after SE(3) alignment without scale, over all frames. Drift: of the end point, in % of the path.
+# ms: CPU time a frame, mean, of frontend / human tracker / optimizer, one thread each.
+set -euo pipefail
+# shellcheck source=launch_scripts/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+modes='off mask_only on' run_dir=$AIRDOS_RUNS/benchmark
+folders=() replay_options=()
+while (($# > 0)); do
+  case $1 in
+    --modes | --run-dir)
+      need_value "$@"
+      name=${1#--}
+      printf -v "${name//-/_}" '%s' "$2"
+      shift
+      ;;
+    --set)
+      need_value "$@"
+      replay_options+=(--set "$2")
+      shift
+      ;;
+    --help | -h)
+      print_help
+      exit 0
+      ;;
+    -*) die_usage "unknown option '$1' (see --help)" ;;
+    *) folders+=("${1%/}") ;;
+  esac
+  shift
+done
+((${#folders[@]} > 0)) || die_usage "no sequence given (see --help)"
+for folder in "${folders[@]}"; do [[ -d $folder ]] || die_usage "no folder '$folder'"; done
+need_program airdos-replay
+need_program airdos-evaluate
+
+command -v jq > /dev/null || die "jq is missing: apt-get install jq"
+
+# number_of PATH FILE: a number of one of our JSON files.
+number_of() { jq -r ".$1" "$2"; }
+
+# run_one FOLDER MODE: one row of the table.
+run_one() {
+  local folder=$1 mode=$2 name run evaluation timing
+  name=$(basename "$folder")
+  run=$run_dir/$name/$mode
+  mkdir -p "$run"
+  "$AIRDOS_BIN/airdos-replay" "$folder" --people "$mode" --out "$run/output.lcm" --run-dir "$run" \
+    --timing "$run/timing.json" --no-progress "${replay_options[@]}" > "$run/replay.log" 2>&1 ||
+    die "$name, $mode: airdos-replay failed (log: $run/replay.log)"
+  "$AIRDOS_BIN/airdos-evaluate" trajectory --estimate "$run/trajectory.tum" \
+    --ground-truth "$run/ground_truth.tum" --json "$run/evaluation.json" --plot "$run/trajectory.png" \
+    > "$run/evaluation.txt" 2>&1 || die "$name, $mode: airdos-evaluate failed (log: $run/evaluation.txt)"
+  evaluation=$run/evaluation.json timing=$run/timing.json
+  printf '| %s | %s | %s / %s | %.4f | %.4f | %.4f | %.2f | %.0f / %.0f / %.0f |\n' "$name" "$mode" \
+    "$(number_of poses_matched "$evaluation")" "$(number_of poses_ground_truth "$evaluation")" \
+    "$(number_of ate_se3_m.rmse "$evaluation")" "$(number_of rpe_translation_per_frame_m.rmse "$evaluation")" \
+    "$(number_of rpe_rotation_per_frame_deg.rmse "$evaluation")" "$(number_of end_point_drift_percent "$evaluation")" \
+    "$(number_of processes.frontend.cpu_ms.mean "$timing")" \
+    "$(number_of processes.human_tracker.cpu_ms.mean "$timing")" \
+    "$(number_of processes.optimizer.cpu_ms.mean "$timing")"
+}
+
+echo '| sequence | people | frames posed | ATE m | RPE m | RPE deg | drift % | ms |'
+echo '|---|---|---|---|---|---|---|---|'
+for folder in "${folders[@]}"; do
+  for mode in $modes; do run_one "$folder" "$mode"; done
+done
