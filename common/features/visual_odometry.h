@@ -27,8 +27,8 @@ struct VisualOdometryOptions {
   int min_inliers_tracking = 20;  ///< fewer: STATE_WEAK
   int min_inliers_weak = 4;       ///< fewer: STATE_COASTING
   double min_correlation = 0.8;   ///< of a landmark's patch with the image
-  double aligned_sigma_px = 0.5;  ///< of an aligned patch at level 0; grows with the level
-  double corner_sigma_px = 1.0;   ///< of a corner whose patch did not align
+  double aligned_sigma_px = 0.2;  ///< of an aligned patch at level 0; grows with the level
+  double corner_sigma_px = 0.7;   ///< of a corner whose patch did not align
   int max_observations = 300;     ///< of landmarks a frame
   int observation_cell_px = 16;   ///< at most two observed landmarks in each cell of this size
   double prior_min_sigma_position_m = 0.03;
