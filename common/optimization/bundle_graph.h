@@ -4,9 +4,12 @@
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <array>
 #include <deque>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "common/optimization/bundle_adjuster.h"
@@ -107,7 +110,11 @@ void BundleGraph::AddReprojection(Observation* observation, bool has_right, doub
   if (observation->is_eliminated) return;
   const StereoCamera* camera = &problem_->camera;
   ceres::CostFunction* cost = nullptr;
-  if (has_right) {
+  if constexpr (std::is_same_v<Observation, BundleProblem::JointState>) {
+    const Eigen::Matrix3d information = observation->covariance_px2.inverse();
+    cost = new ReprojectionFactor<3>(camera, observation->uvu_px,
+                                     Eigen::Matrix3d(information.llt().matrixU()));
+  } else if (has_right) {
     cost = new ReprojectionFactor<3>(camera, observation->uvu_px, observation->sigma_px);
   } else {
     cost = new ReprojectionFactor<2>(camera, observation->uvu_px, observation->sigma_px);

@@ -54,7 +54,7 @@ struct BundleProblem {
     int joint = 0;                                  ///< COCO-18, 0..13
     Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< start value, then result
     Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();
-    double sigma_px = 1;
+    Eigen::Matrix3d covariance_px2 = Eigen::Matrix3d::Identity();  ///< of uvu_px
     bool is_eliminated = false;  ///< as above: its reprojection, not the joint
   };
   /// Result: how one rigid part (index into kParts) moved from the frame where the person was seen

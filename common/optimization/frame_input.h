@@ -22,7 +22,9 @@ struct StaticObservation {
 struct JointObservation {
   int joint = 0;  ///< COCO-18, 0..13
   Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();
-  double sigma_px = 1;
+  /// Of uvu_px; positive definite. Where the disparity was measured in the images, u_left and
+  /// u_right err together: the depth is known far better than either says by itself.
+  Eigen::Matrix3d covariance_px2 = Eigen::Matrix3d::Identity();
 };
 
 struct HumanObservation {

@@ -23,7 +23,7 @@ void HumanTracks::AddFrame(const StereoCamera& camera, const FrameInput& input) 
       if (uvu_px.x() - uvu_px.z() < options_.min_disparity_px) continue;
       const auto p_C = camera.Triangulate(uvu_px.x(), uvu_px.y(), uvu_px.z());
       if (!p_C || p_C->z() > options_.max_depth_m) continue;
-      joints[seen.joint] = {uvu_px, seen.sigma_px, *p_C, *p_C, false};
+      joints[seen.joint] = {uvu_px, seen.covariance_px2, *p_C, *p_C, false};
     }
     if (joints.empty()) continue;
     Person& person = people_[human.id];
@@ -70,7 +70,8 @@ void HumanTracks::AddTo(BundleProblem* problem) const {
       const int frame = index.at(frame_id);
       const Se3& T_W_C = problem->frames[static_cast<std::size_t>(frame)].T_W_C;
       for (const auto& [joint, seen] : joints) {
-        human.joints.push_back({frame, joint, T_W_C * seen.p_C, seen.uvu_px, seen.sigma_px, false});
+        human.joints.push_back(
+            {frame, joint, T_W_C * seen.p_C, seen.uvu_px, seen.covariance_px2, false});
       }
     }
     const bool is_known = person.num_sightings >= options_.min_frames_for_lengths;

@@ -68,7 +68,7 @@ class HumanTracks {
  private:
   struct Joint {
     Eigen::Vector3d uvu_px;
-    double sigma_px;
+    Eigen::Matrix3d covariance_px2;
     Eigen::Vector3d p_C;           ///< as triangulated, then as optimized
     Eigen::Vector3d p_C_measured;  ///< as triangulated
     bool is_eliminated = false;    ///< by the last adjustment

@@ -14,7 +14,7 @@ namespace airdos {
 /// Reprojection of a point, static landmark (paper, eq. 1) or joint (eq. 2), into a stereo frame:
 ///
 ///   p_C = R_W_C^T (p_W - t_W_C)
-///   r   = (project(p_C) - (u_left, v, u_right)) / sigma
+///   r   = U (project(p_C) - (u_left, v, u_right)),   U^T U = covariance^-1
 ///
 /// in standard deviations; kRows = 3, or 2 where there is no measurement in the right image. With
 /// the tangent (d_t, d_r) of the pose: d p_C = -d_t + [p_C]_x d_r + R_W_C^T d p_W.
@@ -28,9 +28,15 @@ class ReprojectionFactor final : public ceres::SizedCostFunction<kRows, kPoseBlo
  public:
   static constexpr double kMinDepth_m = 0.05;
 
-  /// `camera` is not owned and must outlive the factor.
+  using Weight = Eigen::Matrix<double, kRows, kRows>;
+
+  /// `camera` is not owned and must outlive the factor. All coordinates have the same error.
   ReprojectionFactor(const StereoCamera* camera, const Eigen::Vector3d& uvu_px, double sigma_px)
-      : camera_(camera), uvu_px_(uvu_px), weight_(1 / sigma_px) {}
+      : ReprojectionFactor(camera, uvu_px, Weight(Weight::Identity() / sigma_px)) {}
+  /// `sqrt_information` is U, in 1 / px.
+  ReprojectionFactor(const StereoCamera* camera, const Eigen::Vector3d& uvu_px,
+                     const Weight& sqrt_information)
+      : camera_(camera), uvu_px_(uvu_px), weight_(sqrt_information) {}
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
@@ -61,7 +67,7 @@ class ReprojectionFactor final : public ceres::SizedCostFunction<kRows, kPoseBlo
  private:
   const StereoCamera* camera_;
   Eigen::Vector3d uvu_px_;
-  double weight_;
+  Weight weight_;
 };
 
 }  // namespace airdos

@@ -1,9 +1,11 @@
 #include "processes/optimizer/optimizer_messages.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "common/human/skeleton.h"
 #include "processes/node/conversions.h"
@@ -41,7 +43,25 @@ void AddFeatures(const static_features_t& message, FrameInput* input) {
   }
 }
 
-void AddHuman(const human_observation_t& message, FrameInput* input) {
+/// Covariance of (u_left, v, u_right) in px^2 from that of the joint in C: J S J^T. Nothing where
+/// it is no covariance.
+std::optional<Eigen::Matrix3d> ImageCovariance(const StereoCamera& camera,
+                                               const human_observation_t& message, std::size_t i) {
+  const std::vector<float>& s = message.covariance_C[i];
+  Eigen::Matrix3d S;
+  S << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+  const Eigen::Vector3d p_C(message.x_C_m[i], message.y_C_m[i], message.z_C_m[i]);
+  if (!S.allFinite() || !p_C.allFinite() || !(p_C.z() > 0)) return std::nullopt;
+  const Eigen::Matrix3d J = camera.ProjectStereoJacobian(p_C);
+  const Eigen::Matrix3d covariance_px2 = J * S * J.transpose();
+  constexpr double kLeastVariance_px2 = 1e-4;  // single precision may have lost what is below
+  const Eigen::Matrix3d safe = 0.5 * (covariance_px2 + covariance_px2.transpose()) +
+                               kLeastVariance_px2 * Eigen::Matrix3d::Identity();
+  if (Eigen::LLT<Eigen::Matrix3d>(safe).info() != Eigen::Success) return std::nullopt;
+  return safe;
+}
+
+void AddHuman(const StereoCamera& camera, const human_observation_t& message, FrameInput* input) {
   HumanObservation human;
   human.id.value = message.track_id;
   for (std::size_t i = 0; i < static_cast<std::size_t>(message.num_joints); ++i) {
@@ -50,9 +70,11 @@ void AddHuman(const human_observation_t& message, FrameInput* input) {
     // One row for both images: the cameras are rectified.
     joint.uvu_px = {message.u_left_px[i], 0.5F * (message.v_left_px[i] + message.v_right_px[i]),
                     message.u_right_px[i]};
-    joint.sigma_px = message.sigma_px[i];
     const bool is_body = joint.joint >= 0 && joint.joint < kNumJoints;
-    if (is_body && IsUsable(joint.uvu_px, true, joint.sigma_px)) human.joints.push_back(joint);
+    const std::optional<Eigen::Matrix3d> covariance_px2 = ImageCovariance(camera, message, i);
+    if (!is_body || !joint.uvu_px.allFinite() || !covariance_px2) continue;
+    joint.covariance_px2 = *covariance_px2;
+    human.joints.push_back(joint);
   }
   const auto by_joint = [](const JointObservation& a, const JointObservation& b) {
     return a.joint < b.joint;
@@ -177,14 +199,14 @@ class PartWriter {
 
 }  // namespace
 
-FrameInput ToFrameInput(const Header& header, const static_features_t* features,
-                        const human_observations_t* humans) {
+FrameInput ToFrameInput(const Header& header, const StereoCamera& camera,
+                        const static_features_t* features, const human_observations_t* humans) {
   FrameInput input;
   input.id.value = header.seq;
   input.time_s = static_cast<double>(header.utime) * kMicro;
   if (features != nullptr) AddFeatures(*features, &input);
   if (humans != nullptr) {
-    for (const human_observation_t& human : humans->humans) AddHuman(human, &input);
+    for (const human_observation_t& human : humans->humans) AddHuman(camera, human, &input);
     const auto by_id = [](const HumanObservation& a, const HumanObservation& b) {
       return a.id < b.id;
     };

@@ -15,9 +15,9 @@ namespace airdos {
 // Between the optimizer's messages and the types of common/optimization.
 
 /// Either message may be null: it never came. Observations that are not finite are left out, and so
-/// are joints beyond the body model.
-FrameInput ToFrameInput(const Header& header, const static_features_t* features,
-                        const human_observations_t* humans);
+/// are joints beyond the body model and those whose covariance is none.
+FrameInput ToFrameInput(const Header& header, const StereoCamera& camera,
+                        const static_features_t* features, const human_observations_t* humans);
 
 state_estimate_t ToStateEstimate(const Header& header, const FrameEstimate& estimate);
 

@@ -19,8 +19,9 @@ void OptimizerNode::ProcessFrame(const Header& header, OptimizerInputs inputs) {
   if (window_ == nullptr) {
     window_ = std::make_unique<SlidingWindowOptimizer>(options_.window, camera());
   }
-  const FrameInput input = ToFrameInput(header, inputs.features ? &*inputs.features : nullptr,
-                                        inputs.humans ? &*inputs.humans : nullptr);
+  const FrameInput input =
+      ToFrameInput(header, camera(), inputs.features ? &*inputs.features : nullptr,
+                   inputs.humans ? &*inputs.humans : nullptr);
   const FrameResult result = window_->Process(input);
   Publish(channel::kStateEstimate, ToStateEstimate(header, result.estimate));
   for (const map_update_t& part : ToMapUpdates(header, result.changes)) {

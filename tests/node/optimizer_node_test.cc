@@ -79,11 +79,12 @@ human_observations_t Humans(const FrameInput& input, const StereoCamera& camera)
       out.v_left_px.push_back(static_cast<float>(joint.uvu_px.y()));
       out.u_right_px.push_back(static_cast<float>(joint.uvu_px.z()));
       out.v_right_px.push_back(static_cast<float>(joint.uvu_px.y()));
-      out.sigma_px.push_back(static_cast<float>(joint.sigma_px));
+      const double sigma_px = std::sqrt(joint.covariance_px2(0, 0));
+      out.sigma_px.push_back(static_cast<float>(sigma_px));
       out.x_C_m.push_back(static_cast<float>(p_C->x()));
       out.y_C_m.push_back(static_cast<float>(p_C->y()));
       out.z_C_m.push_back(static_cast<float>(p_C->z()));
-      const Eigen::Matrix3d S = camera.TriangulationCovariance(*p_C, joint.sigma_px);
+      const Eigen::Matrix3d S = camera.TriangulationCovariance(*p_C, sigma_px);
       std::vector<float> row;
       for (const auto& [i, j] :
            {std::pair<int, int>{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}) {

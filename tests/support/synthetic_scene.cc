@@ -79,7 +79,8 @@ void ObservePeople(const SyntheticSceneOptions& options, const SyntheticScene& s
       const Eigen::Vector3d& p_W = scene.joints_W[person][k][static_cast<std::size_t>(joint)];
       if (!Project(scene.camera, scene.T_W_C[k], p_W, &observation.uvu_px)) continue;
       observation.uvu_px += Noise(generator, options.joint_sigma_px);
-      observation.sigma_px = options.joint_sigma_px > 0 ? options.joint_sigma_px : 1.0;
+      if (options.joint_sigma_px > 0)
+        observation.covariance_px2 *= options.joint_sigma_px * options.joint_sigma_px;
       human.joints.push_back(observation);
     }
     if (!human.joints.empty()) input->humans.push_back(human);
