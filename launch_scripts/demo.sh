@@ -44,13 +44,15 @@ say "step 3 of 4: replay of $log"
 mkdir -p "$run_dir"
 "$AIRDOS_BIN/airdos-replay" "$log" --out "$run_dir/output.lcm" --run-dir "$run_dir"
 
-say "step 4 of 4: evaluation"
+say "step 4 of 4: evaluation and pictures"
 if [[ -s $run_dir/ground_truth.tum ]]; then
   "$AIRDOS_BIN/airdos-evaluate" trajectory --estimate "$run_dir/trajectory.tum" \
     --ground-truth "$run_dir/ground_truth.tum" --json "$run_dir/evaluation.json" --plot "$run_dir/trajectory.png"
 else
   say "the log holds no ground truth, so there is nothing to compare the trajectory with"
 fi
+
+"$AIRDOS_BIN/airdos-map" plot "$run_dir/map.airdos" --out "$run_dir/map.png"
 
 say "results:"
 for file in "$run_dir"/*; do printf '  %9s  %s\n' "$(du -h "$file" | cut -f1)" "$file"; done

@@ -135,13 +135,21 @@ void DrawAxes(const Chart& chart, const Frame& frame, cv::Mat* picture) {
   DrawVerticalText(picture, chart.y_label, {area.x - kLeftMargin + 16, area.y + area.height / 2});
 }
 
+std::vector<const ChartSeries*> NamedSeries(const Chart& chart) {
+  std::vector<const ChartSeries*> named;
+  for (const ChartSeries& series : chart.series) {
+    if (!series.name.empty()) named.push_back(&series);
+  }
+  return named;
+}
+
 /// In the corner of the chart's area that holds the fewest points.
 void DrawLegend(const Chart& chart, const Frame& frame, cv::Mat* picture) {
+  const std::vector<const ChartSeries*> named = NamedSeries(chart);
   int width = 0;
-  for (const ChartSeries& series : chart.series) {
-    width = std::max(width, TextSize(series.name).width + 70);
-  }
-  const cv::Size size(width, 14 + 26 * static_cast<int>(chart.series.size()));
+  for (const ChartSeries* series : named)
+    width = std::max(width, TextSize(series->name).width + 70);
+  const cv::Size size(width, 14 + 26 * static_cast<int>(named.size()));
   const cv::Point corners[] = {
       {frame.area.x + 10, frame.area.y + 10},
       {frame.area.br().x - size.width - 10, frame.area.y + 10},
@@ -162,11 +170,16 @@ void DrawLegend(const Chart& chart, const Frame& frame, cv::Mat* picture) {
   }
   cv::rectangle(*picture, best, kPaper, cv::FILLED);
   cv::rectangle(*picture, best, kGrid);
-  for (std::size_t i = 0; i < chart.series.size(); ++i) {
+  for (std::size_t i = 0; i < named.size(); ++i) {
     const int row = best.y + 22 + 26 * static_cast<int>(i);
-    cv::line(*picture, {best.x + 12, row - 5}, {best.x + 48, row - 5}, chart.series[i].color_bgr,
-             chart.series[i].thickness_px, cv::LINE_AA);
-    DrawText(picture, chart.series[i].name, {best.x + 58, row});
+    if (named[i]->is_dots) {
+      cv::circle(*picture, {best.x + 30, row - 5}, named[i]->thickness_px + 1, named[i]->color_bgr,
+                 cv::FILLED, cv::LINE_AA);
+    } else {
+      cv::line(*picture, {best.x + 12, row - 5}, {best.x + 48, row - 5}, named[i]->color_bgr,
+               named[i]->thickness_px, cv::LINE_AA);
+    }
+    DrawText(picture, named[i]->name, {best.x + 58, row});
   }
 }
 
@@ -196,9 +209,15 @@ void DrawChart(const Chart& chart, const cv::Rect& area_px, cv::Mat* picture) {
   for (const ChartSeries& series : chart.series) {
     std::vector<cv::Point> pixels;
     for (const cv::Point2d& point : series.points) pixels.push_back(frame.ToPixel(point));
-    cv::polylines(*picture, pixels, false, series.color_bgr, series.thickness_px, cv::LINE_AA);
+    if (!series.is_dots) {
+      cv::polylines(*picture, pixels, false, series.color_bgr, series.thickness_px, cv::LINE_AA);
+      continue;
+    }
+    for (const cv::Point& pixel : pixels) {
+      cv::circle(*picture, pixel, series.thickness_px, series.color_bgr, cv::FILLED, cv::LINE_AA);
+    }
   }
-  if (chart.series.size() > 1) DrawLegend(chart, frame, picture);
+  if (NamedSeries(chart).size() > 1) DrawLegend(chart, frame, picture);
 }
 
 }  // namespace airdos

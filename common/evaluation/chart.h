@@ -7,12 +7,13 @@
 
 namespace airdos {
 
-/// One line of a chart.
+/// One line of a chart, or a cloud of dots.
 struct ChartSeries {
   std::string name;
   cv::Scalar color_bgr;
   int thickness_px = 2;
   std::vector<cv::Point2d> points;  ///< in the units of the axes
+  bool is_dots = false;             ///< dots of thickness_px instead of a line through the points
 };
 
 /// A chart with ticks at round numbers, a grid and a legend (where more than one series has a

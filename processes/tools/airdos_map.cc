@@ -9,6 +9,7 @@
 #include "common/map/map_export.h"
 #include "common/util/error.h"
 #include "common/util/version.h"
+#include "processes/tools/map_picture.h"
 
 namespace airdos {
 namespace {
@@ -63,6 +64,12 @@ void Export(const std::string& path, const std::string& folder) {
   }
 }
 
+void Plot(const std::string& path, const std::string& picture) {
+  MapFileSummary summary;
+  WriteMapPicture(ReadAndSayWhatIsLost(path, &summary), picture);
+  std::printf("%s\n", picture.c_str());
+}
+
 int Run(int argc, char** argv) {
   CLI::App app("What is in a 4-D map, and its exports");
   app.set_version_flag("--version", kVersion);
@@ -75,6 +82,11 @@ int Run(int argc, char** argv) {
       app.add_subcommand("export", "Write trajectories, PLY and people of a map");
   export_command->add_option("FILE", file, "map.airdos")->required();
   export_command->add_option("--out", folder, "folder to write to")->required();
+  std::string picture;
+  CLI::App* const plot_command =
+      app.add_subcommand("plot", "Draw a map from above: camera, people, static points");
+  plot_command->add_option("FILE", file, "map.airdos")->required();
+  plot_command->add_option("--out", picture, "PNG to write")->required();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -82,6 +94,7 @@ int Run(int argc, char** argv) {
   }
   if (info->parsed()) PrintInfo(file);
   if (export_command->parsed()) Export(file, folder);
+  if (plot_command->parsed()) Plot(file, picture);
   return 0;
 }
 
