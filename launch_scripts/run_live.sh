@@ -77,6 +77,9 @@ declare -A pids=() exit_codes=()
 stopping=no
 trap 'stopping=yes' INT TERM
 
+# Ctrl-C reaches a sleep as well, and its failure must not end the script before it has stopped the others.
+pause() { sleep "$1" || true; }
+
 # start NAME PROGRAM ARGUMENTS…: in a session of its own, so that Ctrl-C reaches this script only and the processes are
 # stopped in order; they end with this script even if that is killed.
 start() {
@@ -106,7 +109,7 @@ stop() {
       kill -KILL "${pids[$name]}" 2> /dev/null || true
       break
     fi
-    sleep 0.05
+    pause 0.05
   done
   collect "$name"
 }
@@ -135,7 +138,7 @@ wait_until_ready() {
     fi
     ((SECONDS < deadline)) || { say "$name is not READY after $READY_DEADLINE_S s" >&2 && finish; }
     [[ $stopping == no ]] || finish
-    sleep 0.05
+    pause 0.05
   done
 }
 
@@ -156,7 +159,7 @@ wait_until_idle() {
   last=$(ticks)
   while ((SECONDS - quiet_since < IDLE_S)) && [[ $stopping == no ]]; do
     ((SECONDS < deadline)) || { say "the processes are still busy after $DRAIN_DEADLINE_S s" && return; }
-    sleep 0.5
+    pause 0.5
     now=$(ticks)
     if ((now - last > 2)); then quiet_since=$SECONDS; fi
     last=$now
@@ -195,7 +198,7 @@ if [[ -n $data ]]; then
   start player "$AIRDOS_BIN/airdos-stereo-player" --data "$data" "${arguments[@]}"
 elif [[ -n $log ]]; then
   # lcm-logplayer waits for nobody and says nothing twice, so leave the receivers' threads a moment to come up.
-  sleep 1
+  pause 1
   start player lcm-logplayer -s "$speed" -e "$AIRDOS_CAMERA_CHANNELS" -l "$url" "$log"
 fi
 while [[ $stopping == no ]]; do
@@ -207,6 +210,6 @@ while [[ $stopping == no ]]; do
   fi
   report_ended
   ((${#exit_codes[@]} < ${#PROCESSES[@]})) || break
-  sleep 0.2
+  pause 0.2
 done
 finish

@@ -106,6 +106,27 @@ processes_start_and_end_together() {
   done
 }
 
+# kill_sleep_of PID: ends a sleep that this process waits for, as Ctrl-C does.
+kill_sleep_of() {
+  local status
+  for status in /proc/[0-9]*/status; do
+    if grep -qs "^Name:.sleep" "$status" && grep -qs "^PPid:.$1\$" "$status"; then
+      status=${status#/proc/}
+      kill -TERM "${status%/status}" 2> /dev/null && return 0
+    fi
+  done
+  return 1
+}
+
+stops_in_order_although_the_signal_ends_its_sleep() {
+  start_live
+  await "READY" grep -qs "READY: frontend" "$work/live.out"
+  await "a sleep of the script" kill_sleep_of "$live_pid"
+  kill -TERM "$live_pid"
+  end_live 0
+  grep -q "map-recorder: exit code 0" "$work/live.out" || fail "not stopped in order: $(cat "$work/live.out")"
+}
+
 others_go_on_when_one_is_killed() {
   start_live
   await "READY" grep -qs "READY: frontend" "$work/live.out"
@@ -142,6 +163,7 @@ fi
 mkdir "$work/bin"
 for program in frontend human-tracker optimizer map-recorder; do make_program "airdos-$program"; done
 processes_start_and_end_together
+stops_in_order_although_the_signal_ends_its_sleep
 others_go_on_when_one_is_killed
 log_is_played_into_them_and_then_all_end
 failing_start_is_said
