@@ -12,7 +12,8 @@
 #   --host-network        run in this machine's own network instead of a namespace of its own
 #   --help                this text
 #
-# Without --data and --log it runs until Ctrl-C and waits for images. Each process' messages go to <run-dir>/<process>.log.
+# Without --data and --log it runs until Ctrl-C and waits for images. Each process' messages go to <run-dir>/<process>.log, its
+# configuration with all values in force to <run-dir>/<process>.yaml.
 # Exit 0 if all processes ended well.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
@@ -181,10 +182,12 @@ report_ended() {
 } > "$run_dir/state"
 
 arguments=(--lcm-url "$url" --pace "$pace")
-start frontend "$AIRDOS_BIN/airdos-frontend" "${arguments[@]}"
-start human-tracker "$AIRDOS_BIN/airdos-human-tracker" "${arguments[@]}"
-start optimizer "$AIRDOS_BIN/airdos-optimizer" "${arguments[@]}"
-start map-recorder "$AIRDOS_BIN/airdos-map-recorder" "${arguments[@]}" --set "output.directory=$run_dir"
+# Each leaves its configuration in the run's folder, as airdos-replay does.
+start frontend "$AIRDOS_BIN/airdos-frontend" "${arguments[@]}" --resolved-config "$run_dir/frontend.yaml"
+start human-tracker "$AIRDOS_BIN/airdos-human-tracker" "${arguments[@]}" --resolved-config "$run_dir/human_tracker.yaml"
+start optimizer "$AIRDOS_BIN/airdos-optimizer" "${arguments[@]}" --resolved-config "$run_dir/optimizer.yaml"
+start map-recorder "$AIRDOS_BIN/airdos-map-recorder" "${arguments[@]}" --set "output.directory=$run_dir" \
+  --resolved-config "$run_dir/map_recorder.yaml"
 for process in "${PROCESSES[@]}"; do wait_until_ready "$process"; done
 say "READY: ${PROCESSES[*]} on $url"
 if [[ $host_network == no ]]; then
@@ -192,7 +195,8 @@ if [[ $host_network == no ]]; then
 fi
 
 if [[ -n $data ]]; then
-  start player "$AIRDOS_BIN/airdos-stereo-player" --data "$data" "${arguments[@]}"
+  start player "$AIRDOS_BIN/airdos-stereo-player" --data "$data" "${arguments[@]}" \
+    --resolved-config "$run_dir/stereo_player.yaml"
 elif [[ -n $log ]]; then
   # lcm-logplayer waits for nobody and says nothing twice, so leave the receivers' threads a moment to come up.
   sleep 1

@@ -305,6 +305,7 @@ TEST_F(PlayerProcessTest, BadInputIsOneLineAndExit2) {
   ExpectOneLine("airdos-echo", {"--config", config, "--pace", "fast"}, "fast");
   ExpectOneLine("airdos-echo", {"--config", config, "--deadline-s", "soon"}, "--deadline-s");
   ExpectOneLine("airdos-echo", {"--config", config, "--lcm-url", "foo://x"}, "foo://x");
+  ExpectOneLine("airdos-echo", {"--config", config, "--resolved-config", "/no/where"}, "/no/where");
   std::ofstream(config, std::ios::app) << "  typo: 1\n";
   ExpectOneLine("airdos-echo", {"--config", config}, "echo.typo");
   const std::string data = MakeData(3);
@@ -313,6 +314,17 @@ TEST_F(PlayerProcessTest, BadInputIsOneLineAndExit2) {
   ExpectOneLine("airdos-stereo-player", {"--data", "/nowhere"}, "/nowhere");
   ExpectOneLine("airdos-stereo-player", {"--data", data, "--first", "7"}, "frames 0 to 2");
   ExpectOneLine("airdos-stereo-player", {"--data", data, "--set", "image.size=3"}, "image.size");
+}
+
+TEST_F(PlayerProcessTest, LeavesItsConfigurationBehind) {
+  const std::string resolved = (folder_ / "resolved.yaml").string();
+  const auto player =
+      StartPlayer(MakeData(1), {"--write-log", (folder_ / "log").string(), "--resolved-config",
+                                resolved, "--set", "lockstep.frames_in_flight=7"});
+  ASSERT_EQ(player->Wait(kDeadline_s), 0) << player->Errors();
+  std::ifstream file(resolved);
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  EXPECT_NE(text.find("lockstep.frames_in_flight: 7\n"), std::string::npos) << text;
 }
 
 TEST_F(PlayerProcessTest, WithoutMulticastRouteItSaysWhatToDo) {
