@@ -83,6 +83,7 @@ trap 'stopping=yes' INT TERM
 start() {
   local name=$1
   shift
+  : > "$run_dir/$name.log" # here, not by the child below: it must not be asked while it still holds the READY of a run before
   setsid setpriv --pdeathsig TERM -- "$@" > "$run_dir/$name.log" 2>&1 < /dev/null &
   pids[$name]=$!
   echo "$name=${pids[$name]}" >> "$run_dir/state"
@@ -198,8 +199,6 @@ if [[ -n $data ]]; then
   start player "$AIRDOS_BIN/airdos-stereo-player" --data "$data" "${arguments[@]}" \
     --resolved-config "$run_dir/stereo_player.yaml"
 elif [[ -n $log ]]; then
-  # lcm-logplayer waits for nobody and says nothing twice, so leave the receivers' threads a moment to come up.
-  sleep 1
   start player lcm-logplayer -s "$speed" -e "$AIRDOS_CAMERA_CHANNELS" -l "$url" "$log"
 fi
 while [[ $stopping == no ]]; do

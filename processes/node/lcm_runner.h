@@ -31,7 +31,7 @@ class LcmRunner {
   LcmRunner(Node* node, LcmTransport* transport, const LcmRunnerOptions& options,
             std::ostream* log);
 
-  /// Subscribes. Throws as LcmTransport does.
+  /// Subscribes; from its return on every message is heard. Throws as LcmTransport does.
   void Start();
   /// Works until StopRequested().
   void Run();

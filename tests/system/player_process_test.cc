@@ -273,6 +273,26 @@ TEST_F(PlayerProcessTest, NamesASilentChannelAndCompletesTheFrameWithoutIt) {
   }
 }
 
+TEST_F(PlayerProcessTest, HearsWhatIsSaidRightAfterReady) {
+  EnterNetwork();
+  if (IsSkipped()) return;
+  // Whoever plays a log waits for READY and says everything once.
+  for (int session = 0; session < 10; ++session) {
+    const auto echo = StartEcho();
+    ASSERT_TRUE(WaitUntil([&] { return echo->HasSaid(" READY "); }, kDeadline_s));
+    auto calibration = Sample<stereo_calibration_t>();
+    auto image = Sample<image_t>();
+    calibration.session = image.session = session;
+    Say("CALIBRATION", calibration);
+    Say("CAMERA_LEFT", image);
+    Say("CAMERA_RIGHT", image);
+    ASSERT_TRUE(HearUntil([&] { return !echoes_.empty() && echoes_.back().session == session; }))
+        << "start " << session << ": " << echo->Errors();
+    EXPECT_GT(echoes_.back().position[0], 0);
+    EXPECT_GT(echoes_.back().position[1], 0);
+  }
+}
+
 TEST_F(PlayerProcessTest, ASignalEndsThePlayerWhileItWaits) {
   EnterNetwork();
   if (IsSkipped()) return;
