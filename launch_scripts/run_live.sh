@@ -12,7 +12,8 @@
 #   --host-network        run in this machine's own network instead of a namespace of its own
 #   --help                this text
 #
-# Without --data and --log it runs until Ctrl-C and waits for images. Each process' messages go to <run-dir>/<process>.log.
+# Without --data and --log it runs until Ctrl-C and waits for images. Each process' messages go to <run-dir>/<process>.log, its
+# configuration with all values in force to <run-dir>/<process>.yaml.
 # Exit 0 if all processes ended well.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
@@ -85,6 +86,7 @@ pause() { sleep "$1" || true; }
 start() {
   local name=$1
   shift
+  : > "$run_dir/$name.log" # here, not by the child below: it must not be asked while it still holds the READY of a run before
   setsid setpriv --pdeathsig TERM -- "$@" > "$run_dir/$name.log" 2>&1 < /dev/null &
   pids[$name]=$!
   echo "$name=${pids[$name]}" >> "$run_dir/state"
@@ -184,10 +186,12 @@ report_ended() {
 } > "$run_dir/state"
 
 arguments=(--lcm-url "$url" --pace "$pace")
-start frontend "$AIRDOS_BIN/airdos-frontend" "${arguments[@]}"
-start human-tracker "$AIRDOS_BIN/airdos-human-tracker" "${arguments[@]}"
-start optimizer "$AIRDOS_BIN/airdos-optimizer" "${arguments[@]}"
-start map-recorder "$AIRDOS_BIN/airdos-map-recorder" "${arguments[@]}" --set "output.directory=$run_dir"
+# Each leaves its configuration in the run's folder, as airdos-replay does.
+start frontend "$AIRDOS_BIN/airdos-frontend" "${arguments[@]}" --resolved-config "$run_dir/frontend.yaml"
+start human-tracker "$AIRDOS_BIN/airdos-human-tracker" "${arguments[@]}" --resolved-config "$run_dir/human_tracker.yaml"
+start optimizer "$AIRDOS_BIN/airdos-optimizer" "${arguments[@]}" --resolved-config "$run_dir/optimizer.yaml"
+start map-recorder "$AIRDOS_BIN/airdos-map-recorder" "${arguments[@]}" --set "output.directory=$run_dir" \
+  --resolved-config "$run_dir/map_recorder.yaml"
 for process in "${PROCESSES[@]}"; do wait_until_ready "$process"; done
 say "READY: ${PROCESSES[*]} on $url"
 if [[ $host_network == no ]]; then
@@ -195,10 +199,9 @@ if [[ $host_network == no ]]; then
 fi
 
 if [[ -n $data ]]; then
-  start player "$AIRDOS_BIN/airdos-stereo-player" --data "$data" "${arguments[@]}"
+  start player "$AIRDOS_BIN/airdos-stereo-player" --data "$data" "${arguments[@]}" \
+    --resolved-config "$run_dir/stereo_player.yaml"
 elif [[ -n $log ]]; then
-  # lcm-logplayer waits for nobody and says nothing twice, so leave the receivers' threads a moment to come up.
-  pause 1
   start player lcm-logplayer -s "$speed" -e "$AIRDOS_CAMERA_CHANNELS" -l "$url" "$log"
 fi
 while [[ $stopping == no ]]; do

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <utility>
 
 #include "common/map/map_export.h"
@@ -198,11 +197,6 @@ void MapRecorderNode::CloseSession() {
   Append(EndChunk(camera, axes));
   file_.reset();
 
-  std::ofstream config(session_directory_ + "/map_recorder.resolved.yaml");
-  config << options_.resolved_config;
-  if (!config.flush()) {
-    throw InputError(session_directory_ + "/map_recorder.resolved.yaml: cannot be written");
-  }
   if (!options_.export_at_end) return;
   MapFileSummary summary;
   ExportMap(ReadFourDMap(session_directory_ + kMapName, &summary), session_directory_);
@@ -213,7 +207,6 @@ std::unique_ptr<Node> MakeMapRecorderNode(ConfigReader* config) {
   config->Read("output.directory", &options.directory);
   config->Read("output.chunk_frames", &options.chunk_frames, 1, 1000);
   config->Read("output.export_at_end", &options.export_at_end);
-  options.resolved_config = config->Resolved();
   return std::make_unique<MapRecorderNode>(options);
 }
 

@@ -20,7 +20,6 @@ struct MapRecorderOptions {
   std::string directory = "airdos_map";  ///< made if it is not there
   int chunk_frames = 10;                 ///< frames a chunk; a kill loses at most one chunk
   bool export_at_end = true;             ///< also write the exports of common/map/map_export.h
-  std::string resolved_config;           ///< written beside the map
 };
 
 /// STATE_ESTIMATE and MAP_UPDATE of one frame.

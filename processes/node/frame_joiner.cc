@@ -66,12 +66,13 @@ FrameJoiner::Arrival FrameJoiner::Add(int input, const Header& header, Key* key)
 std::optional<FrameJoiner::Frame> FrameJoiner::Oldest() const {
   if (pending_.empty()) return std::nullopt;
   const auto& [key, pending] = *pending_.begin();
-  Frame frame{key, pending.header, {}, !MayHavePredecessor(key)};
+  Frame frame{key, pending.header, {}, {}, false};
   for (std::size_t input = 0; input < num_inputs_; ++input) {
     if (pending.arrived[input]) continue;
     frame.missing.push_back(static_cast<int>(input));
-    if (!IsOvertaken(input, key)) frame.settled = false;
+    if (!IsOvertaken(input, key)) frame.awaited.push_back(static_cast<int>(input));
   }
+  frame.settled = frame.awaited.empty() && !MayHavePredecessor(key);
   return frame;
 }
 

@@ -41,6 +41,7 @@ class FrameJoiner {
     Key key;
     Header header;
     std::vector<int> missing;  ///< inputs that have not arrived
+    std::vector<int> awaited;  ///< of these, the ones that have not been overtaken
     bool settled = false;
   };
 

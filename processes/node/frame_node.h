@@ -68,7 +68,7 @@ class FrameNode : public Node {
     const std::optional<FrameJoiner::Frame> frame = joiner_->Oldest();
     if (!frame) return "";
     std::string text;
-    for (const int input : frame->missing)
+    for (const int input : frame->awaited)  // what was overtaken is lost: nobody waits for it
       text += channels_of_inputs_[static_cast<std::size_t>(input)] + " ";
     if (!HasCalibration(frame->header)) text += std::string(channel::kCalibration) + " ";
     for (const std::string& name : MissingFeedback(frame->header)) text += name + " ";

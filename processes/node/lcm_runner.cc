@@ -40,6 +40,7 @@ void LcmRunner::Start() {
         channel, [this, channel](const void* data, std::size_t size, std::int64_t receive_utime) {
           node_->Receive(channel, data, size);
           last_receive_utime_ = receive_utime;
+          SayFirstRejects();
         });
   }
 }
@@ -118,6 +119,7 @@ void LcmRunner::CompleteAfterDeadline() {
 }
 
 void LcmRunner::PublishOutput() {
+  SayFirstRejects();  // some messages are only rejected when their frame is worked on
   for (const Envelope& message : node_->TakeOutput()) {
     PublishBytes(message.channel, message.payload);
   }
@@ -184,6 +186,14 @@ void LcmRunner::PublishBytes(const std::string& channel, const std::vector<std::
 
 void LcmRunner::Say(const std::string& line) {
   *log_ << options_.process << ": " << line << std::endl;
+}
+
+void LcmRunner::SayFirstRejects() {
+  for (const auto& [channel, counters] : node_->channels()) {
+    if (counters.num_rejected == 0 || !rejects_said_.insert(channel).second) continue;
+    Say("rejected a message on " + channel + ": " + counters.last_reject +
+        " (further ones are counted in STATUS)");
+  }
 }
 
 void LcmRunner::SayCounters() {

@@ -31,7 +31,7 @@ class LcmRunner {
   LcmRunner(Node* node, LcmTransport* transport, const LcmRunnerOptions& options,
             std::ostream* log);
 
-  /// Subscribes. Throws as LcmTransport does.
+  /// Subscribes; from its return on every message is heard. Throws as LcmTransport does.
   void Start();
   /// Works until StopRequested().
   void Run();
@@ -46,6 +46,8 @@ class LcmRunner {
   void PublishStatus(std::int8_t state);
   void PublishStatusWhenDue();
   void Say(const std::string& line);
+  /// Says which channel has rejected a message for the first time, and why.
+  void SayFirstRejects();
   void SayCounters();
   template <class Message>
   void Publish(const std::string& channel, const Message& message);
@@ -59,7 +61,8 @@ class LcmRunner {
   std::int64_t last_receive_utime_ = 0;
   double progress_s_ = 0;  // when a frame was finished last or none waited
   double next_status_s_ = 0;
-  std::set<std::string> silent_said_;  // waiting_for() texts that were said already
+  std::set<std::string> silent_said_;   // waiting_for() texts that were said already
+  std::set<std::string> rejects_said_;  // channels; later rejects are counted in STATUS only
   bool is_stalled_ = false;
   bool publish_failure_said_ = false;
   std::string last_error_;

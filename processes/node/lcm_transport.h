@@ -39,7 +39,9 @@ class LcmTransport {
   LcmTransport(const LcmTransport&) = delete;
   LcmTransport& operator=(const LcmTransport&) = delete;
 
-  /// `channel` is the exact name. Throws InputError as the constructor does.
+  /// `channel` is the exact name. When this returns, what is said on it is heard: LCM's first
+  /// subscription waits for a message of its own (LCM_SELF_TEST). Throws InputError as the
+  /// constructor does.
   void Subscribe(const std::string& channel, Handler handler);
   /// Every channel; `handler` gets its name first. For recorders and the like.
   void SubscribeAll(std::function<void(const std::string& channel, const void* data,

@@ -10,6 +10,7 @@
 #include "common/util/error.h"
 #include "common/util/version.h"
 #include "processes/node/channels.h"
+#include "processes/node/frame_joiner.h"
 #include "processes/node/log_source.h"
 #include "processes/node/process_usage.h"
 
@@ -83,9 +84,12 @@ void LogRecorder::CountGap(const std::string& channel, const void* data, std::si
   Header& newest = entry->second;
   if (!is_first && newest.session == header->session) {
     if (header->seq <= newest.seq) return;
-    // The difference of hostile numbers may not fit.
-    channels_[channel].num_missing += static_cast<std::int64_t>(
-        static_cast<std::uint64_t>(header->seq) - static_cast<std::uint64_t>(newest.seq) - 1);
+    // Unsigned, because the difference of hostile numbers may not fit.
+    const std::uint64_t num_missing =
+        static_cast<std::uint64_t>(header->seq) - static_cast<std::uint64_t>(newest.seq) - 1;
+    if (num_missing > static_cast<std::uint64_t>(FrameJoiner::kMaxAhead))
+      return;  // the processes do not believe it either
+    channels_[channel].num_missing += static_cast<std::int64_t>(num_missing);
   }
   newest = *header;
 }

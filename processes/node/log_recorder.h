@@ -34,7 +34,7 @@ class LogRecorder {
   void Sync() { writer_.Sync(); }
 
   /// What was taken of each channel. num_missing counts gaps of `seq` within a session, on channels
-  /// that carry every image.
+  /// that carry every image; numbers more than FrameJoiner::kMaxAhead ahead are nonsense.
   const std::map<std::string, ChannelCounters>& channels() const { return channels_; }
   std::int64_t num_events() const { return writer_.num_events(); }
   /// One line a channel and one for all.

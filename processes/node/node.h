@@ -60,7 +60,8 @@ class Node {
   virtual bool CompleteOldest() = 0;
   /// Drops (and counts) the frames that are older than the newest complete one: realtime pace.
   virtual void SkipToNewest() = 0;
-  /// Channels that the oldest waiting frame lacks, separated by spaces; empty if no frame waits.
+  /// Channels that the oldest waiting frame lacks and that can still bring it, separated by spaces;
+  /// empty if no frame waits.
   virtual std::string waiting_for() const = 0;
   virtual std::size_t num_pending() const = 0;
 

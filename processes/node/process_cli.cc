@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 
 #include "common/util/error.h"
@@ -41,6 +42,8 @@ void AddCommonOptions(const std::string& config_name, CLI::App* app, CommonArgum
   app->add_option("--set", arguments->overrides, "section.key=value: replaces one value of it")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app->add_option("--resolved-config", arguments->resolved_config,
+                  "File to write all options to with the values in force");
   app->set_version_flag("--version", std::string(kVersion));
 }
 
@@ -48,6 +51,15 @@ ConfigReader ReadConfig(const CommonArguments& arguments) {
   ConfigReader config = ConfigReader::FromFile(arguments.config_file);
   for (const std::string& assignment : arguments.overrides) config.Override(assignment);
   return config;
+}
+
+void FinishConfig(const ConfigReader& config, const CommonArguments& arguments) {
+  config.Finish();
+  if (arguments.resolved_config.empty()) return;
+  std::ofstream file(arguments.resolved_config);
+  file << config.Resolved();
+  file.close();
+  if (!file) throw InputError(arguments.resolved_config + ": cannot be written");
 }
 
 int RunProgram(int argc, char** argv, CLI::App* app, const std::function<int()>& body) {

@@ -19,7 +19,7 @@ int Run(const ProcessInfo& info, const CommonArguments& arguments, LcmRunnerOpti
   cv::setNumThreads(1);  // several threads may add in another order
   ConfigReader config = ReadConfig(arguments);
   const std::unique_ptr<Node> node = info.make_node(&config);
-  config.Finish();
+  FinishConfig(config, arguments);
   LcmTransport transport(arguments.lcm_url);
   options.process = info.program;
   options.publishes_frame_done = info.publishes_frame_done;

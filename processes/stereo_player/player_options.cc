@@ -77,7 +77,7 @@ PlayerOptions PlayerArguments::Resolve() const {
   config.Read("lockstep.frames_in_flight", &options.gate.frames_in_flight, 1, 1000);
   config.Read("image.max_image_bytes", &options.image.max_image_bytes, 1000, 100000000);
   config.Read("image.jpeg_qualities", &qualities);
-  config.Finish();
+  FinishConfig(config, common_);
   options.image.jpeg_qualities = ToQualities(qualities);
   if (wait_for_) wait_for = *wait_for_ == "none" ? "" : *wait_for_;
   options.gate.wait_for = SplitAtCommas(wait_for);

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <ostream>
 #include <string>
 
 #include "tests/support/human_scoring.h"
@@ -22,6 +23,11 @@ struct Band {
   double max_median_error_m;
   int max_switches;
   double min_idf1;
+
+  // GoogleTest prints parameters into names; without it, as raw bytes.
+  friend std::ostream& operator<<(std::ostream& out, const Band& band) {
+    return out << band.sequence;
+  }
 };
 
 std::string SequenceName(const testing::TestParamInfo<Band>& info) { return info.param.sequence; }

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <ctime>
 #include <iostream>
 #include <random>
 
@@ -216,55 +215,6 @@ TEST(TrustRuleTest, EachConditionCounts) {
   EXPECT_FALSE(TrustsPeople(options, 10, without, other, shift));  // they do not help
   other.newest_covariance.reset();
   EXPECT_FALSE(TrustsPeople(options, 10, without, other, shift));
-}
-
-/// For people who look at the speed: --gtest_also_run_disabled_tests.
-void PrintTimes(const SlidingWindowOptions& window, const SyntheticSceneOptions& options) {
-  const SyntheticScene scene = MakeSyntheticScene(options);
-  SlidingWindowOptimizer optimizer(window, scene.camera);
-  double sum_ms = 0;
-  for (const FrameInput& input : scene.frames) {
-    const std::clock_t start = std::clock();  // processor time: other work must not count
-    const FrameResult result = optimizer.Process(input);
-    const double ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    const FrameEstimate& estimate = result.estimate;
-    const Se3& truth = scene.T_W_C[static_cast<std::size_t>(input.id.value)];
-    const auto error_m = [&truth](const Se3& T_W_C) {
-      return (T_W_C.translation - truth.translation).norm();
-    };
-    std::cout << input.id.value << ": " << ms << " ms, " << estimate.summary.num_iterations
-              << " iterations, " << estimate.num_static_landmarks << " landmarks, "
-              << estimate.num_static_observations << " seen, " << estimate.summary.num_people
-              << " people, " << estimate.summary.num_motion << " motion, -"
-              << estimate.summary.num_motion_eliminated << ", trusts " << estimate.trusts_people
-              << ", error m without " << error_m(estimate.T_W_C_without_people) << " with "
-              << error_m(estimate.T_W_C_with_people) << "\n";
-    if (input.id.value >= 20) sum_ms += ms;
-  }
-  std::cout << "mean from frame 20 on: " << sum_ms / (options.num_frames - 20) << " ms\n";
-}
-
-TEST(SlidingWindowTest, DISABLED_TimeStatic) {
-  SyntheticSceneOptions options;
-  options.num_frames = 50;
-  options.outlier_ratio = 0.02;
-  PrintTimes(StaticOnly(), options);
-}
-
-TEST(SlidingWindowTest, DISABLED_TimePeople) {
-  SyntheticSceneOptions options;
-  options.num_frames = 40;
-  options.num_people = 15;
-  options.outlier_ratio = 0.02;
-  PrintTimes(SlidingWindowOptions(), options);
-}
-
-TEST(SlidingWindowTest, DISABLED_TimePeopleFewStatic) {
-  SyntheticSceneOptions options;
-  options.num_frames = 40;
-  options.num_people = 15;
-  options.max_static_per_frame = 8;
-  PrintTimes(SlidingWindowOptions(), options);
 }
 
 }  // namespace

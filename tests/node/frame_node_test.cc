@@ -262,6 +262,23 @@ TEST(FrameNodeTest, FeedbackHoldsAFrameBack) {
   EXPECT_EQ(node.text, "session7 0mp0@1 1mp0@1 ");
 }
 
+TEST(FrameNodeTest, OnlyWhatCanStillComeIsWaitedFor) {
+  ScribeNode node;
+  node.awaited_feedback = {1};
+  Give(&node, Calibration(1));
+  GiveFrame(&node, 0);
+  Give(&node, Mask(1));
+  Give(&node, Part(1, 0, 1));
+  EXPECT_EQ(node.waiting_for(), "POSE FEEDBACK");
+  Give(&node, Pose(2));  // so that of frame 1 is lost
+  Work(&node);
+  EXPECT_EQ(node.waiting_for(), "FEEDBACK");
+  node.awaited_feedback.clear();
+  Work(&node);
+  EXPECT_EQ(node.text, "session7 0mp0@1 1m0@1 ");
+  EXPECT_EQ(node.waiting_for(), "MASK PARTS") << "of frame 2";
+}
+
 TEST(FrameNodeTest, MemoryStaysBoundedWhenAChannelIsSilent) {
   ScribeNode node;
   Give(&node, Calibration(1));

@@ -181,6 +181,30 @@ TEST_F(ReplayTest, IncompleteEndAndDamageAreSaid) {
   EXPECT_NE(text.find("frontend: CAMERA_RIGHT: 1 missing"), std::string::npos) << text;
 }
 
+/// Says for each frame what its input does not take.
+class BabblingNode : public TextNode {
+ public:
+  using TextNode::TextNode;
+
+ protected:
+  void ProcessFrame(const Header& header, TextInputs) override {
+    Publish(channel::kStaticFeatures, TextMessage(header.seq, "", header.session));
+  }
+};
+
+TEST_F(ReplayTest, RejectedMessagesAreSaid) {
+  WriteInputLog("in.lcm", 10);
+  LogSource source(folder_ + "in.lcm");
+  std::vector<ReplayNode> nodes = MakeNodes();
+  nodes.front().node = std::make_unique<BabblingNode>(
+      "frontend", std::vector<std::string>{channel::kCameraLeft, channel::kCameraRight},
+      channel::kStaticFeatures);
+  const ReplayResult result = Replay(&source, nodes, {});
+  EXPECT_EQ(result.remarks,
+            (std::vector<std::string>{"optimizer: STATIC_FEATURES: 10 rejected, the last because: "
+                                      "process 0 letters: it must have a name"}));
+}
+
 TEST_F(ReplayTest, TimingHasEveryFrameOfEveryNode) {
   WriteInputLog("in.lcm", 10);
   const ReplayResult result = RunReplay("in.lcm", "");

@@ -2,10 +2,13 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -40,27 +43,31 @@ bool WaitUntil(const std::function<bool()>& condition, double deadline_s) {
 }
 
 ChildProcess::ChildProcess(const std::vector<std::string>& command, const std::string& output_stem)
-    : output_stem_(output_stem), pid_(fork()) {
-  if (pid_ < 0) throw std::runtime_error("fork failed");
-  if (pid_ > 0) return;
-  Redirect(output_stem + ".out", STDOUT_FILENO);
-  Redirect(output_stem + ".err", STDERR_FILENO);
+    : output_path_(output_stem + ".out"), error_path_(output_stem + ".err") {
   std::vector<char*> arguments;
   for (const std::string& argument : command) {
     arguments.push_back(const_cast<char*>(argument.c_str()));
   }
   arguments.push_back(nullptr);
-  execv(arguments[0], arguments.data());
+  pid_ = fork();
+  if (pid_ < 0) throw std::runtime_error("fork failed");
+  if (pid_ > 0) return;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  Redirect(output_path_, STDOUT_FILENO);
+  Redirect(error_path_, STDERR_FILENO);
+  execvp(arguments[0], arguments.data());
+  dprintf(STDERR_FILENO, "%s: cannot be started: %s\n", arguments[0], std::strerror(errno));
   _exit(127);
 }
 
 ChildProcess::~ChildProcess() {
-  if (HasEnded()) return;
   Signal(SIGKILL);
   Wait(60);
 }
 
-void ChildProcess::Signal(int signal) const { kill(pid_, signal); }
+void ChildProcess::Signal(int signal) {
+  if (!HasEnded()) kill(pid_, signal);
+}
 
 bool ChildProcess::HasEnded() {
   if (exit_code_) return true;
@@ -75,7 +82,11 @@ std::optional<int> ChildProcess::Wait(double deadline_s) {
   return exit_code_;
 }
 
-std::string ChildProcess::Output() const { return Contents(output_stem_ + ".out"); }
-std::string ChildProcess::Errors() const { return Contents(output_stem_ + ".err"); }
+std::string ChildProcess::Output() const { return Contents(output_path_); }
+std::string ChildProcess::Errors() const { return Contents(error_path_); }
+
+bool ChildProcess::HasSaid(const std::string& text) const {
+  return Output().find(text) != std::string::npos || Errors().find(text) != std::string::npos;
+}
 
 }  // namespace airdos

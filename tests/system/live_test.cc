@@ -18,7 +18,8 @@
 #include "processes/node/event_log.h"
 #include "processes/node/log_source.h"
 #include "processes/tools/replay.h"
-#include "tests/support/process.h"
+#include "tests/support/child_process.h"
+#include "tests/support/private_network.h"
 
 // The real programs as real processes, in a network namespace of their own: what they say over LCM
 // must be what airdos-replay computes, and none of them may take the others down.
@@ -42,7 +43,7 @@ class LiveTest : public testing::Test {
  protected:
   void SetUp() override {
     ASSERT_TRUE(std::filesystem::exists(log_)) << log_ << " is missing";
-    const std::string obstacle = EnterOwnNetwork();
+    const std::string obstacle = EnterPrivateNetwork(true);
     if (!obstacle.empty()) GTEST_SKIP() << obstacle;
     std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
     for (char& c : name) c = c == '/' ? '_' : c;
@@ -63,13 +64,13 @@ class LiveTest : public testing::Test {
     if (!folder_.empty() && !HasFailure()) std::filesystem::remove_all(folder_);
   }
 
-  Process* Start(const std::string& program, const std::vector<std::string>& arguments) {
+  ChildProcess* Start(const std::string& program, const std::vector<std::string>& arguments) {
     std::vector<std::string> command{program.find("lcm-") == 0 ? program : Program(program)};
     command.insert(command.end(), arguments.begin(), arguments.end());
-    processes_[program] = std::make_unique<Process>(command, folder_ + program + ".txt");
+    processes_[program] = std::make_unique<ChildProcess>(command, folder_ + program);
     return processes_[program].get();
   }
-  Process* StartNode(const std::string& program, const std::string& deadline_s) {
+  ChildProcess* StartNode(const std::string& program, const std::string& deadline_s) {
     std::vector<std::string> arguments{"--pace", "lockstep", "--deadline-s", deadline_s};
     if (program == "airdos-map-recorder") {
       arguments.push_back("--set");
@@ -88,15 +89,15 @@ class LiveTest : public testing::Test {
     for (const std::string& program : NodePrograms()) StartNode(program, deadline_s);
     Start("airdos-record", {"--out", recorded_log()});
     for (const auto& [program, process] : processes_) {
-      const Process* started = process.get();
-      ASSERT_TRUE(PollUntil([&] { return started->HasSaid(" READY "); }, kStartDeadline_s))
-          << program << ": " << started->Output();
+      const ChildProcess* started = process.get();
+      ASSERT_TRUE(WaitUntil([&] { return started->HasSaid(" READY "); }, kStartDeadline_s))
+          << program << ": " << started->Errors();
     }
   }
   void StopAll() {
     for (const auto& [program, process] : processes_) {
       process->Signal(SIGINT);
-      EXPECT_EQ(process->Wait(kStartDeadline_s), 0) << program << ": " << process->Output();
+      EXPECT_EQ(process->Wait(kStartDeadline_s), 0) << program << ": " << process->Errors();
     }
   }
   std::string recorded_log() const { return folder_ + "recorded.lcm"; }
@@ -126,17 +127,17 @@ class LiveTest : public testing::Test {
   }
   void WaitForLastFrame() {
     EXPECT_TRUE(
-        PollUntil([this] { return IsLastFrameDoneBy("airdos-map-recorder"); }, kRunDeadline_s))
+        WaitUntil([this] { return IsLastFrameDoneBy("airdos-map-recorder"); }, kRunDeadline_s))
         << "STATE_ESTIMATE: " << NumRecorded(channel::kStateEstimate) << " of " << num_frames_
         << "\n"
-        << processes_["airdos-optimizer"]->Output();
+        << processes_["airdos-optimizer"]->Errors();
   }
 
   // What airdos-replay makes of the log.
   void RunReplay(const std::string& out) {
-    Process* replay = Start("airdos-replay", {log_, "--out", folder_ + out, "--run-dir",
-                                              folder_ + "map_" + out, "--no-progress"});
-    ASSERT_EQ(replay->Wait(kRunDeadline_s), 0) << replay->Output();
+    ChildProcess* replay = Start("airdos-replay", {log_, "--out", folder_ + out, "--run-dir",
+                                                   folder_ + "map_" + out, "--no-progress"});
+    ASSERT_EQ(replay->Wait(kRunDeadline_s), 0) << replay->Errors();
     processes_.erase("airdos-replay");
   }
   void ExpectRecordedEqualsReplayed() {
@@ -151,7 +152,7 @@ class LiveTest : public testing::Test {
   std::string folder_;
   Header last_;
   std::int64_t num_frames_ = 0;
-  std::map<std::string, std::unique_ptr<Process>> processes_;
+  std::map<std::string, std::unique_ptr<ChildProcess>> processes_;
 };
 
 TEST_F(LiveTest, ReplayTwiceGivesTheSameBytes) {
@@ -164,8 +165,8 @@ TEST_F(LiveTest, ReplayTwiceGivesTheSameBytes) {
 
 TEST_F(LiveTest, ProcessesFedByLogplayerSayWhatReplayComputes) {
   ASSERT_NO_FATAL_FAILURE(StartAll("120"));
-  Process* player = Start("lcm-logplayer", {"-s", "1", log_});
-  EXPECT_EQ(player->Wait(kRunDeadline_s), 0) << player->Output();
+  ChildProcess* player = Start("lcm-logplayer", {"-s", "1", log_});
+  EXPECT_EQ(player->Wait(kRunDeadline_s), 0) << player->Errors();
   WaitForLastFrame();
   StopAll();
   ExpectRecordedEqualsReplayed();
@@ -173,8 +174,8 @@ TEST_F(LiveTest, ProcessesFedByLogplayerSayWhatReplayComputes) {
 
 TEST_F(LiveTest, ProcessesFedInLockstepSayWhatReplayComputes) {
   ASSERT_NO_FATAL_FAILURE(StartAll("120"));
-  Process* player = Start("airdos-stereo-player", {"--data", log_, "--pace", "lockstep"});
-  EXPECT_EQ(player->Wait(kRunDeadline_s), 0) << player->Output();
+  ChildProcess* player = Start("airdos-stereo-player", {"--data", log_, "--pace", "lockstep"});
+  EXPECT_EQ(player->Wait(kRunDeadline_s), 0) << player->Errors();
   WaitForLastFrame();
   StopAll();
   ExpectRecordedEqualsReplayed();
@@ -191,12 +192,12 @@ TEST_P(KilledProcessTest, OthersGoOnAndSayWhatTheyMiss) {
       {"airdos-human-tracker", channel::kHumanObservations},
       {"airdos-optimizer", channel::kMapUpdate}};  // which the frontend waits for
   ASSERT_NO_FATAL_FAILURE(StartAll("0.5"));
-  Process* player = Start("lcm-logplayer", {"-s", "0.5", log_});
+  ChildProcess* player = Start("lcm-logplayer", {"-s", "0.5", log_});
   ASSERT_TRUE(
-      PollUntil([this] { return NumRecorded(channel::kStateEstimate) >= 5; }, kRunDeadline_s));
+      WaitUntil([this] { return NumRecorded(channel::kStateEstimate) >= 5; }, kRunDeadline_s));
 
   processes_[victim]->Signal(SIGKILL);
-  EXPECT_EQ(processes_[victim]->Wait(kStartDeadline_s), 128 + SIGKILL);
+  EXPECT_EQ(processes_[victim]->Wait(kStartDeadline_s), -SIGKILL);
   const auto product = products.find(victim);
   if (product != products.end()) {
     const auto somebody_misses_it = [&] {
@@ -205,13 +206,12 @@ TEST_P(KilledProcessTest, OthersGoOnAndSayWhatTheyMiss) {
       }
       return false;
     };
-    EXPECT_TRUE(PollUntil(somebody_misses_it, kStartDeadline_s));
+    EXPECT_TRUE(WaitUntil(somebody_misses_it, kStartDeadline_s));
   }
-  std::filesystem::remove(folder_ + victim + ".txt");
   StartNode(victim, "0.5");
-  ASSERT_TRUE(PollUntil([&] { return processes_[victim]->HasSaid(" READY "); }, kStartDeadline_s));
+  ASSERT_TRUE(WaitUntil([&] { return processes_[victim]->HasSaid(" READY "); }, kStartDeadline_s));
   const std::int64_t num_before = product == products.end() ? 0 : NumRecorded(product->second);
-  EXPECT_EQ(player->Wait(kRunDeadline_s), 0) << player->Output();
+  EXPECT_EQ(player->Wait(kRunDeadline_s), 0) << player->Errors();
   WaitForLastFrame();
   if (product != products.end()) {
     EXPECT_GT(NumRecorded(product->second), num_before);

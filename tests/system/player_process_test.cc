@@ -236,7 +236,7 @@ TEST_F(PlayerProcessTest, NamesASilentChannelAndCompletesTheFrameWithoutIt) {
   Say("CALIBRATION", Sample<stereo_calibration_t>());
   auto image = Sample<image_t>();
   for (image.seq = 0; image.seq < 2; ++image.seq) Say("CAMERA_LEFT", image);
-  Say("CAMERA_LEFT", Sample<pose_t>());  // of another type
+  for (int i = 0; i < 2; ++i) Say("CAMERA_LEFT", Sample<pose_t>());  // of another type
   ASSERT_TRUE(HearUntil([&] { return done_.size() == 2; })) << echo->Errors();
   EXPECT_EQ(done_, (std::vector<std::int64_t>{0, 1}));
   ASSERT_EQ(echoes_.size(), 2u);
@@ -258,17 +258,39 @@ TEST_F(PlayerProcessTest, NamesASilentChannelAndCompletesTheFrameWithoutIt) {
   EXPECT_GT(last.memory_mb, 0);
   for (const channel_status_t& channel : last.channels) {
     if (channel.channel == "CAMERA_LEFT") {
-      EXPECT_EQ(channel.num_received, 3);
-      EXPECT_EQ(channel.num_rejected, 1);
+      EXPECT_EQ(channel.num_received, 4);
+      EXPECT_EQ(channel.num_rejected, 2);
     }
     if (channel.channel == "CAMERA_RIGHT") {
       EXPECT_EQ(channel.num_missing, 2);
     }
   }
-  const std::string line = "nothing on CAMERA_RIGHT for 0.3 s";
-  const std::string errors = echo->Errors();
-  ASSERT_NE(errors.find(line), std::string::npos) << errors;
-  EXPECT_EQ(errors.find(line, errors.find(line) + 1), std::string::npos) << "said once";
+  for (const std::string line : {"nothing on CAMERA_RIGHT for 0.3 s",
+                                 "rejected a message on CAMERA_LEFT: does not decode"}) {
+    const std::string errors = echo->Errors();
+    ASSERT_NE(errors.find(line), std::string::npos) << errors;
+    EXPECT_EQ(errors.find(line, errors.find(line) + 1), std::string::npos) << "said once";
+  }
+}
+
+TEST_F(PlayerProcessTest, HearsWhatIsSaidRightAfterReady) {
+  EnterNetwork();
+  if (IsSkipped()) return;
+  // Whoever plays a log waits for READY and says everything once.
+  for (int session = 0; session < 10; ++session) {
+    const auto echo = StartEcho();
+    ASSERT_TRUE(WaitUntil([&] { return echo->HasSaid(" READY "); }, kDeadline_s));
+    auto calibration = Sample<stereo_calibration_t>();
+    auto image = Sample<image_t>();
+    calibration.session = image.session = session;
+    Say("CALIBRATION", calibration);
+    Say("CAMERA_LEFT", image);
+    Say("CAMERA_RIGHT", image);
+    ASSERT_TRUE(HearUntil([&] { return !echoes_.empty() && echoes_.back().session == session; }))
+        << "start " << session << ": " << echo->Errors();
+    EXPECT_GT(echoes_.back().position[0], 0);
+    EXPECT_GT(echoes_.back().position[1], 0);
+  }
 }
 
 TEST_F(PlayerProcessTest, ASignalEndsThePlayerWhileItWaits) {
@@ -303,6 +325,7 @@ TEST_F(PlayerProcessTest, BadInputIsOneLineAndExit2) {
   ExpectOneLine("airdos-echo", {"--config", config, "--pace", "fast"}, "fast");
   ExpectOneLine("airdos-echo", {"--config", config, "--deadline-s", "soon"}, "--deadline-s");
   ExpectOneLine("airdos-echo", {"--config", config, "--lcm-url", "foo://x"}, "foo://x");
+  ExpectOneLine("airdos-echo", {"--config", config, "--resolved-config", "/no/where"}, "/no/where");
   std::ofstream(config, std::ios::app) << "  typo: 1\n";
   ExpectOneLine("airdos-echo", {"--config", config}, "echo.typo");
   const std::string data = MakeData(3);
@@ -311,6 +334,17 @@ TEST_F(PlayerProcessTest, BadInputIsOneLineAndExit2) {
   ExpectOneLine("airdos-stereo-player", {"--data", "/nowhere"}, "/nowhere");
   ExpectOneLine("airdos-stereo-player", {"--data", data, "--first", "7"}, "frames 0 to 2");
   ExpectOneLine("airdos-stereo-player", {"--data", data, "--set", "image.size=3"}, "image.size");
+}
+
+TEST_F(PlayerProcessTest, LeavesItsConfigurationBehind) {
+  const std::string resolved = (folder_ / "resolved.yaml").string();
+  const auto player =
+      StartPlayer(MakeData(1), {"--write-log", (folder_ / "log").string(), "--resolved-config",
+                                resolved, "--set", "lockstep.frames_in_flight=7"});
+  ASSERT_EQ(player->Wait(kDeadline_s), 0) << player->Errors();
+  std::ifstream file(resolved);
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  EXPECT_NE(text.find("lockstep.frames_in_flight: 7\n"), std::string::npos) << text;
 }
 
 TEST_F(PlayerProcessTest, WithoutMulticastRouteItSaysWhatToDo) {

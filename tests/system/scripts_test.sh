@@ -103,6 +103,8 @@ processes_start_and_end_together() {
   for process in frontend human-tracker optimizer map-recorder; do
     grep -q "$process: exit code 0" "$work/live.out" || fail "no exit code of $process: $(cat "$work/live.out")"
     grep -q "end of .*$process" "$work/run/$process.log" || fail "$process was not asked to end"
+    grep -q -e "--resolved-config $work/run/${process//-/_}.yaml" "$work/run/$process.log" ||
+      fail "$process does not leave its configuration: $(cat "$work/run/$process.log")"
   done
 }
 

@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "processes/frontend/frontend_node.h"
+#include "tests/node/frontend_messages.h"
+
+// What the frontend makes of the optimizer's MAP_UPDATE.
+
+namespace airdos {
+namespace {
+
+TEST(FrontendNode, WaitsForTheUpdateOfTwoFramesBack) {
+  FrontendNode node(FrontendOptions{});
+  Send(channel::kCalibration, Calibration(), &node);
+  for (int k = 0; k < 5; ++k) SendFrame(k, &node);
+  EXPECT_EQ(StepAll(&node).size(), 2u);
+  EXPECT_EQ(node.waiting_for(), channel::kMapUpdate);
+  Send(channel::kMapUpdate, Update(0), &node);
+  EXPECT_EQ(StepAll(&node).size(), 1u);
+  EXPECT_EQ(node.waiting_for(), channel::kMapUpdate);
+  // Update 1 never comes: that of a later frame says so.
+  Send(channel::kMapUpdate, Update(2), &node);
+  EXPECT_EQ(StepAll(&node).size(), 2u);
+  EXPECT_EQ(node.waiting_for(), "");
+}
+
+TEST(FrontendNode, AnUpdateInPartsCountsOnceItIsWhole) {
+  FrontendNode node(FrontendOptions{});
+  Send(channel::kCalibration, Calibration(), &node);
+  for (int k = 0; k < 3; ++k) SendFrame(k, &node);
+  EXPECT_EQ(StepAll(&node).size(), 2u);
+  map_update_t part = Update(0);
+  part.num_parts = 2;
+  part.part = 1;
+  Send(channel::kMapUpdate, part, &node);
+  EXPECT_FALSE(node.Step());
+  EXPECT_EQ(node.waiting_for(), channel::kMapUpdate);
+  part.part = 0;
+  Send(channel::kMapUpdate, part, &node);
+  EXPECT_EQ(StepAll(&node).size(), 1u);
+}
+
+TEST(FrontendNode, WithoutAnUpdateItGoesOnAndWaitsAgainOnceOneComes) {
+  FrontendNode node(FrontendOptions{});
+  Send(channel::kCalibration, Calibration(), &node);
+  for (int k = 0; k < 8; ++k) SendFrame(k, &node);
+  EXPECT_EQ(StepAll(&node).size(), 2u);
+  ASSERT_TRUE(node.CompleteOldest());
+  const std::vector<static_features_t> completed = Take(&node);
+  ASSERT_EQ(completed.size(), 1u);
+  EXPECT_EQ(completed[0].tracking_state, kTracking);
+  // The optimizer is silent: the next ones do not wait for it.
+  ASSERT_TRUE(node.Step());
+  ASSERT_TRUE(node.Step());
+  EXPECT_EQ(Take(&node).back().seq, 4);
+  // It is back, with frame 4: frames 5 and 6 may start, and 7 waits for frame 5.
+  Send(channel::kMapUpdate, Update(4), &node);
+  EXPECT_EQ(StepAll(&node).back().seq, 6);
+  EXPECT_EQ(node.waiting_for(), channel::kMapUpdate);
+  EXPECT_EQ(node.frames().num_done, 7);
+}
+
+TEST(FrontendNode, UpdatesThatDoNotBelongHereAreRejected) {
+  FrontendNode node(FrontendOptions{});
+  const auto num_rejected = [&node] {
+    return node.channels().at(channel::kMapUpdate).num_rejected;
+  };
+  Send(channel::kMapUpdate, Update(0), &node);  // before any frame
+  EXPECT_EQ(num_rejected(), 1);
+  Send(channel::kCalibration, Calibration(), &node);
+  for (int k = 0; k < 3; ++k) SendFrame(k, &node);
+  EXPECT_EQ(StepAll(&node).size(), 2u);
+  Send(channel::kMapUpdate, Update(1, kSession + 1), &node);
+  EXPECT_EQ(num_rejected(), 2);
+  EXPECT_EQ(node.channels().at(channel::kMapUpdate).last_reject, "of another session");
+  Send(channel::kMapUpdate, Update(2), &node);  // of a frame that has no output yet
+  EXPECT_EQ(num_rejected(), 3);
+  EXPECT_FALSE(node.Step());
+  Send(channel::kMapUpdate, Update(0), &node);
+  EXPECT_EQ(StepAll(&node).size(), 1u);
+  Send(channel::kMapUpdate, Update(0), &node);  // again, and too late
+  EXPECT_EQ(num_rejected(), 4);
+}
+
+TEST(FrontendNode, TheOptimizersPosesAreTakenOverAtTheLag) {
+  Se3 T_new_old;
+  T_new_old.translation = {0.3, -0.2, 0.1};
+  FrontendNode node(FrontendOptions{});
+  Send(channel::kCalibration, Calibration(), &node);
+  for (int k = 0; k < 6; ++k) {
+    SendFrame(k, &node);
+    const std::vector<static_features_t> output = StepAll(&node);
+    ASSERT_EQ(output.size(), 1u);
+    // Update 0 is in force from frame 2 on, though it was there before frame 1.
+    EXPECT_LT(PositionError_m(output[0], k < 2 ? Truth(k) : T_new_old * Truth(k)), 0.015)
+        << "frame " << k;
+    map_update_t update = Update(k);
+    if (k == 0) AddFrame(0, T_new_old * Truth(0), &update);
+    Send(channel::kMapUpdate, update, &node);
+  }
+}
+
+TEST(FrontendNode, LandmarksThatTheOptimizerRemovedAreNotSeenAgain) {
+  FrontendNode node(FrontendOptions{});
+  Send(channel::kCalibration, Calibration(), &node);
+  std::vector<std::int64_t> removed;
+  for (int k = 0; k < 5; ++k) {
+    SendFrame(k, &node);
+    const std::vector<static_features_t> output = StepAll(&node);
+    ASSERT_EQ(output.size(), 1u);
+    map_update_t update = Update(k);
+    if (k == 0) {
+      for (const std::int64_t id : output[0].landmark_id) {
+        if (id % 2 == 0) removed.push_back(id);
+      }
+      update.removed_landmark_id = removed;
+      update.num_removed = static_cast<std::int32_t>(removed.size());
+    }
+    Send(channel::kMapUpdate, update, &node);
+    int num_seen = 0;
+    for (const std::int64_t id : output[0].landmark_id) {
+      num_seen += std::find(removed.begin(), removed.end(), id) != removed.end() ? 1 : 0;
+    }
+    EXPECT_EQ(num_seen > 0, k < 2) << "frame " << k;
+  }
+}
+
+}  // namespace
+}  // namespace airdos
