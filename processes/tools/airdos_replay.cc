@@ -54,6 +54,9 @@ int main(int argc, char** argv) {
     const airdos::ReplayResult result = airdos::Replay(source.get(), nodes, options);
     if (!timing_path.empty()) airdos::WriteTiming(result, timing_path);
     std::cout << (digest ? airdos::FormatDigests(result.digests) : airdos::FormatSummary(result));
+    if (digest) {  // which must not hide that something was rejected
+      for (const std::string& remark : result.remarks) std::cerr << "note: " << remark << "\n";
+    }
     return 0;
   });
 }
