@@ -16,7 +16,8 @@ namespace airdos {
 std::optional<cv::Mat> DecodeGray(const image_t& message);
 std::optional<cv::Mat> DecodeColor(const image_t& message);
 
-/// Pixels of a mask message (CV_8UC1, not 0 = a person); nothing in the same cases, or where it holds no mask.
+/// Pixels of a mask message (CV_8UC1, not 0 = a person); nothing in the same cases, or where it
+/// holds no mask.
 std::optional<cv::Mat> DecodeMask(const person_mask_t& message);
 
 }  // namespace airdos
