@@ -16,7 +16,8 @@ namespace airdos {
 inline frame_done_t TextMessage(std::int64_t seq, const std::string& text,
                                 std::int64_t session = 7) {
   frame_done_t message;
-  message.utime = 1000 * seq;
+  // Unsigned product, because hostile image numbers overflow.
+  message.utime = static_cast<std::int64_t>(1000U * static_cast<std::uint64_t>(seq));
   message.seq = seq;
   message.session = session;
   message.process = text;
