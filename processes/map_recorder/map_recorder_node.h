@@ -48,7 +48,7 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
 
   /// Writes the last chunks and the exports. Nothing where no frame came. Throws InputError naming
   /// the file that cannot be written.
-  void Finish();
+  void Finish() override;
 
   /// Of the session in work; empty before the first frame.
   const std::string& session_directory() const { return session_directory_; }

@@ -64,6 +64,9 @@ class Node {
   /// empty if no frame waits.
   virtual std::string waiting_for() const = 0;
   virtual std::size_t num_pending() const = 0;
+  /// No more will come: writes what is only written at the end. Throws InputError if it cannot; a
+  /// destructor could only mumble it.
+  virtual void Finish() {}
 
   /// What was published since the last call, in order.
   std::vector<Envelope> TakeOutput();

@@ -28,6 +28,7 @@ int Run(const ProcessInfo& info, const CommonArguments& arguments, LcmRunnerOpti
   std::cout << info.program << " READY version " << kVersion << " url " << arguments.lcm_url
             << " config " << arguments.config_file << std::endl;
   runner.Run();
+  node->Finish();
   return 0;
 }
 

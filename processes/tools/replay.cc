@@ -170,6 +170,7 @@ ReplayResult Replay(FrameSource* source, const std::vector<ReplayNode>& nodes,
     if (options.on_progress) options.on_progress(source->fraction_done());
   }
   bus.Finish();
+  for (const ReplayNode& entry : nodes) entry.node->Finish();
 
   archive.Fill(&result);
   if (!options.out_path.empty()) result.log_sha256 = FileSha256(options.out_path);
