@@ -80,6 +80,11 @@ void LockstepGate::OnPublished(std::int64_t session, std::int64_t seq, double no
     }
     ++process.num_in_flight;
   }
+  std::size_t most_in_flight = 1;
+  for (const auto& [name, process] : processes_) {
+    most_in_flight = std::max(most_in_flight, process.num_in_flight);
+  }
+  while (published_.size() > most_in_flight) published_.pop_front();
 }
 
 bool LockstepGate::MayPublish(double now_s) {

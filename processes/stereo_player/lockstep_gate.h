@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <string>
 #include <vector>
@@ -65,7 +66,7 @@ class LockstepGate {
   LockstepGateOptions options_;
   double start_s_;
   std::map<std::string, Process> processes_;
-  std::vector<Published> published_;  // all frames, in order
+  std::deque<Published> published_;  // in order; as many as somebody has in flight, at least one
   std::vector<std::string> notes_;
   bool has_newcomer_ = false;
 };

@@ -63,7 +63,9 @@ void WriteLog(const std::string& path, FrameSource* source, std::ostream* log) {
   EventLogWriter writer(path);
   while (!StopRequested()) {
     const std::vector<Envelope> frame = source->NextFrame();
-    for (const std::string& note : source->TakeNotes()) *log << note << std::endl;
+    for (const std::string& note : source->TakeNotes()) {
+      *log << "airdos-stereo-player: " << note << std::endl;
+    }
     if (frame.empty()) break;
     const std::int64_t utime = HeaderOfFrame(frame).utime;
     for (const Envelope& message : frame)
