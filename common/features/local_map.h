@@ -22,6 +22,9 @@ struct LocalLandmark {
   bool is_refined =
       false;  ///< p_W comes from the optimizer; else it moves with its reference frame
 
+  /// m^2, of p_W when it was created: from the stereo measurement and the camera's pose.
+  Eigen::Matrix3d created_covariance_W = Eigen::Matrix3d::Zero();
+
   FrameId reference_frame;
   Eigen::Vector3d p_C_reference = Eigen::Vector3d::Zero();
   std::shared_ptr<const ImagePyramid> reference_image;

@@ -14,6 +14,7 @@ constexpr double kChi2Stereo = 7.815;  // 95 % of 3 degrees of freedom
 constexpr double kChi2Mono = 5.991;    // 95 % of 2
 constexpr double kMinDepth_m = 0.05;
 constexpr double kConverged = 1e-8;
+constexpr std::size_t kMinRedundant = 20;  // observations that check each other
 
 struct Residual {
   Eigen::Vector3d value;  // whitened; the last row is zero without a right observation
@@ -21,23 +22,43 @@ struct Residual {
   bool is_in_front = false;
 };
 
-/// r = (z - pi(T_C_W p_W)) / sigma with its derivative by the tangent of T_W_C: p_C(delta) ~ p_C -
-/// delta_t + [p_C]_x delta_r.
+/// `J` is the derivative of the residual by p_W.
+void Whiten(const Eigen::Matrix3d& J, const PoseObservation& observation, Residual* residual) {
+  const double variance_px2 = observation.sigma_px * observation.sigma_px;
+  if (observation.covariance_W.isZero(0)) {
+    residual->value /= observation.sigma_px;
+    residual->jacobian /= observation.sigma_px;
+    return;
+  }
+  Eigen::Matrix3d S = J * observation.covariance_W * J.transpose();
+  if (!observation.has_right) {
+    S.row(2).setZero();
+    S.col(2).setZero();
+  }
+  S.diagonal().array() += variance_px2;
+  const Eigen::LLT<Eigen::Matrix3d> llt(S);
+  llt.matrixL().solveInPlace(residual->value);
+  llt.matrixL().solveInPlace(residual->jacobian);
+}
+
+/// r = L^-1 (z - pi(T_C_W p_W)) with its derivative by the tangent of T_W_C: p_C(delta) ~ p_C -
+/// delta_t + [p_C]_x delta_r. L L^T is the covariance of z - pi: of the pixels, and of the point
+/// where that is not exactly known.
 Residual Evaluate(const StereoCamera& camera, const Se3& T_C_W,
                   const PoseObservation& observation) {
   Residual residual;
   const Eigen::Vector3d p_C = T_C_W * observation.p_W;
   residual.is_in_front = p_C.z() > kMinDepth_m;
   if (!residual.is_in_front) return residual;
-  const double weight = 1.0 / observation.sigma_px;
-  residual.value = weight * (observation.uvu_px - camera.ProjectStereo(p_C));
-  const Eigen::Matrix3d J = -weight * camera.ProjectStereoJacobian(p_C);
+  residual.value = observation.uvu_px - camera.ProjectStereo(p_C);
+  const Eigen::Matrix3d J = -camera.ProjectStereoJacobian(p_C);
   residual.jacobian.leftCols<3>() = -J;
   residual.jacobian.rightCols<3>() = J * Skew(p_C);
   if (!observation.has_right) {
     residual.value.z() = 0;
     residual.jacobian.row(2).setZero();
   }
+  Whiten(J * T_C_W.rotation.toRotationMatrix(), observation, &residual);
   return residual;
 }
 
@@ -45,32 +66,37 @@ double Chi2Bound(const PoseObservation& observation) {
   return observation.has_right ? kChi2Stereo : kChi2Mono;
 }
 
-/// Adds the prior's normal equations: e = Boxminus(T_W_C, mean) / sigma; the Jacobian is close to
-/// identity for the small e that a prior allows.
-void AddPrior(const PosePrior& prior, const Se3& T_W_C, Matrix6d* H, Vector6d* b) {
+/// Adds the prior's normal equations: e = Boxminus(T_W_C, mean); the Jacobian is close to identity
+/// for the small e that a prior allows.
+void AddPrior(const PosePrior& prior, const Matrix6d& information, const Se3& T_W_C, Matrix6d* H,
+              Vector6d* b) {
   const Vector6d error = Boxminus(T_W_C, prior.T_W_C);
-  Vector6d information;
-  information.head<3>().setConstant(1.0 / (prior.sigma_position_m * prior.sigma_position_m));
-  information.tail<3>().setConstant(1.0 /
-                                    (prior.sigma_orientation_rad * prior.sigma_orientation_rad));
   Matrix6d J = Matrix6d::Identity();
   J.topLeftCorner<3, 3>() = (prior.T_W_C.rotation.conjugate() * T_W_C.rotation).toRotationMatrix();
   J.bottomRightCorner<3, 3>() = RightJacobianInverseSo3(error.tail<3>());
-  *H += J.transpose() * information.asDiagonal() * J;
-  *b -= J.transpose() * information.asDiagonal() * error;
+  *H += J.transpose() * information * J;
+  *b -= J.transpose() * information * error;
 }
 
+/// What does not change from step to step.
+struct Knowledge {
+  const StereoCamera& camera;
+  const std::vector<PoseObservation>& observations;
+  const std::optional<PosePrior>& prior;
+  Matrix6d prior_information;
+};
+
 /// One Gauss-Newton step; false where the system cannot be solved.
-bool Step(const StereoCamera& camera, const std::vector<PoseObservation>& observations,
-          const std::vector<bool>& is_used, const std::optional<PosePrior>& prior, bool robust,
-          Se3* T_W_C, double* step_norm) {
+bool Step(const Knowledge& known, const std::vector<bool>& is_used, bool robust, Se3* T_W_C,
+          double* step_norm) {
+  const std::vector<PoseObservation>& observations = known.observations;
   Matrix6d H = Matrix6d::Zero();
   Vector6d b = Vector6d::Zero();
   const Se3 T_C_W = T_W_C->inverse();
   int num_used = 0;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (!is_used[i]) continue;
-    const Residual residual = Evaluate(camera, T_C_W, observations[i]);
+    const Residual residual = Evaluate(known.camera, T_C_W, observations[i]);
     if (!residual.is_in_front) continue;
     const double norm = residual.value.norm();
     const double huber = std::sqrt(Chi2Bound(observations[i]));
@@ -79,8 +105,8 @@ bool Step(const StereoCamera& camera, const std::vector<PoseObservation>& observ
     b.noalias() -= weight * residual.jacobian.transpose() * residual.value;
     ++num_used;
   }
-  if (prior) AddPrior(*prior, *T_W_C, &H, &b);
-  if (!prior && num_used < 3) return false;
+  if (known.prior) AddPrior(*known.prior, known.prior_information, *T_W_C, &H, &b);
+  if (!known.prior && num_used < 3) return false;
   const Eigen::LDLT<Matrix6d> ldlt(H);
   if (ldlt.info() != Eigen::Success || !ldlt.isPositive()) return false;
   const Vector6d delta = ldlt.solve(b);
@@ -90,21 +116,50 @@ bool Step(const StereoCamera& camera, const std::vector<PoseObservation>& observ
   return true;
 }
 
+/// Of few observations each can pull the pose to itself: those that the prior does not allow stay
+/// out. The bound is wide, as the prior's linearisation is coarse.
+void GateByPrior(const Knowledge& known, std::vector<bool>* is_possible) {
+  constexpr double kMaxChi2 = 16;
+  const Se3 T_C_W = known.prior->T_W_C.inverse();
+  for (std::size_t i = 0; i < known.observations.size(); ++i) {
+    const Residual residual = Evaluate(known.camera, T_C_W, known.observations[i]);
+    if (!residual.is_in_front) {
+      (*is_possible)[i] = false;
+      continue;
+    }
+    const Eigen::Matrix3d S =
+        residual.jacobian * known.prior->covariance * residual.jacobian.transpose() +
+        Eigen::Matrix3d::Identity();
+    (*is_possible)[i] = residual.value.dot(S.ldlt().solve(residual.value)) <= kMaxChi2;
+  }
+}
+
 }  // namespace
+
+PosePrior IsotropicPrior(const Se3& T_W_C, double sigma_position_m, double sigma_orientation_rad) {
+  PosePrior prior{T_W_C, Matrix6d::Zero()};
+  prior.covariance.diagonal().head<3>().setConstant(sigma_position_m * sigma_position_m);
+  prior.covariance.diagonal().tail<3>().setConstant(sigma_orientation_rad * sigma_orientation_rad);
+  return prior;
+}
 
 PoseEstimate EstimatePose(const StereoCamera& camera,
                           const std::vector<PoseObservation>& observations, const Se3& start,
                           const std::optional<PosePrior>& prior) {
+  Knowledge known{camera, observations, prior, Matrix6d::Zero()};
+  if (prior) known.prior_information = prior->covariance.inverse();
   PoseEstimate estimate;
   estimate.T_W_C = start;
   estimate.is_inlier.assign(observations.size(), true);
+  if (prior && observations.size() < kMinRedundant) {
+    GateByPrior(known, &estimate.is_inlier);
+  }
+  const std::vector<bool> is_possible = estimate.is_inlier;
   for (int round = 0; round < kNumRounds; ++round) {
     const bool robust = round < kNumRounds - 1;
     for (int iteration = 0; iteration < kIterationsPerRound; ++iteration) {
       double step_norm = 0;
-      if (!Step(camera, observations, estimate.is_inlier, prior, robust, &estimate.T_W_C,
-                &step_norm))
-        break;
+      if (!Step(known, estimate.is_inlier, robust, &estimate.T_W_C, &step_norm)) break;
       if (step_norm < kConverged) break;
     }
     estimate.num_inliers = 0;
@@ -112,8 +167,8 @@ PoseEstimate EstimatePose(const StereoCamera& camera,
     const Se3 T_C_W = estimate.T_W_C.inverse();
     for (std::size_t i = 0; i < observations.size(); ++i) {
       const Residual residual = Evaluate(camera, T_C_W, observations[i]);
-      estimate.is_inlier[i] =
-          residual.is_in_front && residual.value.squaredNorm() <= Chi2Bound(observations[i]);
+      estimate.is_inlier[i] = is_possible[i] && residual.is_in_front &&
+                              residual.value.squaredNorm() <= Chi2Bound(observations[i]);
       if (!estimate.is_inlier[i]) continue;
       ++estimate.num_inliers;
       estimate.information.noalias() += residual.jacobian.transpose() * residual.jacobian;

@@ -10,21 +10,22 @@
 
 namespace airdos {
 
-/// A known point and where one stereo frame sees it.
+/// A point and where one stereo frame sees it.
 struct PoseObservation {
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
   Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();  ///< u_left, v, u_right
   bool has_right = false;
   double sigma_px = 1;
+  Eigen::Matrix3d covariance_W = Eigen::Matrix3d::Zero();  ///< m^2, of p_W; zero: exactly known
 };
 
-/// What is known of the pose beforehand: mean and standard deviation per axis of the tangent in C
-/// (see Boxplus).
+/// What is known of the pose beforehand: mean, and covariance of its tangent in C (see Boxplus).
 struct PosePrior {
   Se3 T_W_C;
-  double sigma_position_m = 0.04;
-  double sigma_orientation_rad = 0.05;
+  Matrix6d covariance = Matrix6d::Identity();  ///< m, rad
 };
+/// The same for all axes.
+PosePrior IsotropicPrior(const Se3& T_W_C, double sigma_position_m, double sigma_orientation_rad);
 
 struct PoseEstimate {
   Se3 T_W_C;
@@ -38,6 +39,8 @@ struct PoseEstimate {
 /// weights, from `start`; after each of a few rounds the observations beyond the 95 % chi-square
 /// bound are set aside, and may come back in the next. Without a prior and without enough
 /// observations the result is `start`.
+/// Few observations cannot check each other: of fewer than 20, those that a given prior does not
+/// allow are left out from the start.
 PoseEstimate EstimatePose(const StereoCamera& camera,
                           const std::vector<PoseObservation>& observations, const Se3& start,
                           const std::optional<PosePrior>& prior);

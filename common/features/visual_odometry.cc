@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <set>
@@ -13,18 +15,9 @@
 namespace airdos {
 namespace {
 
-constexpr int kRecentFrames = 3;  // landmarks of so many frames are searched in the whole image
-constexpr std::size_t kNumInnovations = 20;
+constexpr int kRecentFrames = 3;     // landmarks of so many frames are searched in the whole image
 constexpr int kMaxPerCell = 2;       // observed landmarks
 constexpr int kMaxTriedPerCell = 4;  // landmarks or corners that are looked for to get there
-
-double MedianOfNorms(const std::deque<Vector6d>& values, int begin) {
-  std::vector<double> norms;
-  for (const Vector6d& value : values) norms.push_back(value.segment<3>(begin).norm());
-  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
-  std::nth_element(norms.begin(), middle, norms.end());
-  return *middle;
-}
 
 /// Counts what lies in each square cell of the image.
 class CellCounter {
@@ -54,6 +47,20 @@ bool IsMasked(const cv::Mat& mask, const Eigen::Vector2d& uv_px) {
   const int u = std::clamp(static_cast<int>(std::lround(uv_px.x())), 0, mask.cols - 1);
   const int v = std::clamp(static_cast<int>(std::lround(uv_px.y())), 0, mask.rows - 1);
   return mask.at<uchar>(v, u) != 0;
+}
+
+std::vector<LandmarkSighting> Inliers(const std::vector<LandmarkSighting>& sightings,
+                                      const PoseEstimate& estimate) {
+  std::vector<LandmarkSighting> inliers;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    if (estimate.is_inlier[i]) inliers.push_back(sightings[i]);
+  }
+  return inliers;
+}
+
+/// Each frame that sees a landmark makes it better known.
+Eigen::Matrix3d CovarianceOf(const LocalLandmark& landmark) {
+  return landmark.created_covariance_W / landmark.num_seen;
 }
 
 }  // namespace
@@ -88,48 +95,65 @@ OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoIm
   AIRDOS_CHECK(images.left.cols == camera.width && images.left.rows == camera.height);
   AIRDOS_CHECK(images.right.size() == images.left.size());
   const View view(camera, images, options_, extractor_);
-  const Se3 predicted = Predict(images.time_s);
   const bool is_first = recent_.empty();
+  const double step_s = StepTo(images.time_s);
+  const PosePrior prior = Predict(step_s);
+  people_.Predict(step_s);
 
   OdometryFrame frame;
+  DescribePrior(step_s, &frame);
   frame.num_detected = static_cast<int>(view.left_features.size()) + view.num_masked;
   frame.num_masked = view.num_masked;
-  const PosePrior prior = Prior(predicted);
-  frame.prior_sigma_position_m = prior.sigma_position_m;
-  frame.prior_sigma_orientation_rad = prior.sigma_orientation_rad;
 
-  Hypothesis best =
-      TrackFrom(view, predicted, {options_.wide_radius_px, options_.wide_max_hamming, 0.9}, prior);
-  if (const std::optional<Se3> relocated = Relocate(view)) {
-    const Hypothesis other =
-        TrackFrom(view, *relocated, {8, options_.narrow_max_hamming, 0.9}, std::nullopt);
-    if (other.num_inliers > best.num_inliers) best = other;
-  }
+  const std::vector<PersonConstraint> people = Constraints(images, prior);
+  const PeoplePose with_people = EstimatePoseFromPeople(prior, people);
+  const Hypothesis best = FindBest(view, with_people.prior);
   frame.num_matched = static_cast<int>(best.matches.size());
-  frame.sightings = Sight(view, best);
-
-  std::vector<PoseObservation> observations;
-  for (const LandmarkSighting& sighting : frame.sightings) {
-    observations.push_back({map_.landmarks().at(sighting.id).p_W, sighting.uvu_px,
-                            sighting.has_right, sighting.sigma_px});
+  frame.sightings = KeepSpread(Sight(view, best));
+  PoseEstimate estimate =
+      EstimateFromSightings(camera, frame.sightings, best.T_W_C, with_people.prior);
+  const bool is_strong = estimate.num_inliers >= options_.max_static_for_people;
+  if (is_strong && !people.empty()) {
+    estimate = EstimateFromSightings(camera, frame.sightings, best.T_W_C, prior);
   }
-  const PoseEstimate estimate = EstimatePose(camera, observations, best.T_W_C, prior);
-  frame.T_W_C = is_first ? Se3() : estimate.T_W_C;
-  frame.state = is_first ? TrackingState::kInitializing : StateOf(estimate.num_inliers);
-  std::vector<LandmarkSighting> inliers;
-  for (std::size_t i = 0; i < observations.size(); ++i) {
-    if (estimate.is_inlier[i]) inliers.push_back(frame.sightings[i]);
-  }
+  frame.num_people = is_strong ? 0 : static_cast<int>(people.size());
+  const bool is_believed = IsBelievable(estimate, with_people.prior);
+  num_static_ = is_believed ? estimate.num_inliers : 0;
+  frame.state = is_first ? TrackingState::kInitializing : StateOf(num_static_);
+  frame.sightings = Inliers(frame.sightings, estimate);
   if (frame.state == TrackingState::kCoasting) {
-    frame.T_W_C = predicted;
-    inliers.clear();
+    frame.sightings.clear();
+    estimate.T_W_C = with_people.prior.T_W_C;
+    estimate.information.setZero();
   }
-  num_coasted_ = frame.state == TrackingState::kCoasting ? num_coasted_ + 1 : 0;
-  frame.sightings = KeepSpread(std::move(inliers));
+  frame.T_W_C = is_first ? Se3() : estimate.T_W_C;
 
   UpdateLandmarks(view, frame.T_W_C, frame.sightings);
-  Remember(images.id, images.time_s, frame.T_W_C);
-  if (frame.state == TrackingState::kTracking) LearnFrom(estimate, prior);
+  if (!is_first) {
+    if (!is_strong) estimate.information += with_people.information;
+    motion_.Update(prior, step_s, frame.T_W_C, estimate.information,
+                   frame.state == TrackingState::kTracking);
+  }
+  if (getenv("VODBG")) {
+    const Vector6d inn = Boxminus(frame.T_W_C, prior.T_W_C);
+    std::fprintf(stderr,
+                 "f %ld inl %d sight %zu matched %d hyp %d ppl %zu prior_t %.3f prior_r %.4f "
+                 "post_t %.4f inn_t %.3f inn_r %.4f vis %zu\n",
+                 (long)images.id.value, num_static_, frame.sightings.size(), frame.num_matched,
+                 best.num_inliers, people.size(),
+                 std::sqrt(prior.covariance.topLeftCorner<3, 3>().trace()),
+                 std::sqrt(prior.covariance.bottomRightCorner<3, 3>().trace()),
+                 std::sqrt(motion_.pose_covariance().topLeftCorner<3, 3>().trace()),
+                 inn.head<3>().norm(), inn.tail<3>().norm(), map_.landmarks().size());
+  }
+  people_.Update(images.people, frame.T_W_C, motion_.pose_covariance());
+  Remember(images.id, images.time_s, &frame);
+  if (getenv("VODBG")) {
+    const auto& t = frame.T_O_C.translation;
+    const auto& q = frame.T_O_C.rotation;
+    std::fprintf(stderr, "O %.6f %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", images.time_s, t.x(), t.y(),
+                 t.z(), q.x(), q.y(), q.z(), q.w());
+  }
   CreateLandmarks(view, frame.T_W_C, &frame.sightings);
   map_.Cull(images.id);
   return frame;
@@ -138,46 +162,71 @@ OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoIm
 OdometryFrame VisualOdometry::Coast(FrameId id, double time_s) {
   OdometryFrame frame;
   const bool is_first = recent_.empty();
-  const Se3 predicted = Predict(time_s);
-  const PosePrior prior = Prior(predicted);
+  const double step_s = StepTo(time_s);
+  const PosePrior prior = Predict(step_s);
+  people_.Predict(step_s);
+  DescribePrior(step_s, &frame);
   frame.state = is_first ? TrackingState::kInitializing : TrackingState::kCoasting;
-  frame.T_W_C = predicted;
-  frame.prior_sigma_position_m = prior.sigma_position_m;
-  frame.prior_sigma_orientation_rad = prior.sigma_orientation_rad;
-  ++num_coasted_;
-  Remember(id, time_s, predicted);
+  frame.T_W_C = prior.T_W_C;
+  num_static_ = 0;
+  if (!is_first) motion_.Update(prior, step_s, frame.T_W_C, Matrix6d::Zero(), false);
+  Remember(id, time_s, &frame);
   return frame;
 }
 
-Se3 VisualOdometry::Predict(double time_s) const {
-  if (recent_.empty()) return Se3();
-  const Se3& last = map_.poses_W_C().at(recent_.back().first);
-  if (recent_.size() < 2) return last;
-  const auto& [before_id, before_time_s] = recent_[recent_.size() - 2];
-  const double last_step_s = recent_.back().second - before_time_s;
-  const double step_s = time_s - recent_.back().second;
-  // A clock that stands still or jumps says nothing of the motion: take one step as before.
-  const bool is_usable = last_step_s > 0 && step_s > 0 && step_s < 10 * last_step_s;
-  const Vector6d motion = Boxminus(last, map_.poses_W_C().at(before_id));
-  return Boxplus(last, (is_usable ? step_s / last_step_s : 1.0) * motion);
+void VisualOdometry::Apply(const MapCorrection& correction) {
+  if (recent_.empty()) return;
+  const Se3 T_Wold_C = map_.poses_W_C().at(recent_.back().first);
+  map_.Apply(correction);
+  people_.Transform(map_.poses_W_C().at(recent_.back().first) * T_Wold_C.inverse());
 }
 
-PosePrior VisualOdometry::Prior(const Se3& T_W_C_predicted) const {
-  // Wide until the carrier is known; then three times what the prediction was usually off by.
-  constexpr std::size_t kMinInnovations = 3;
-  PosePrior prior{T_W_C_predicted, options_.prior_max_sigma_position_m,
-                  options_.prior_max_sigma_orientation_rad};
-  if (innovations_.size() < kMinInnovations) return prior;
-  prior.sigma_position_m =
-      std::clamp(3 * MedianOfNorms(innovations_, 0), options_.prior_min_sigma_position_m,
-                 options_.prior_max_sigma_position_m);
-  prior.sigma_orientation_rad =
-      std::clamp(3 * MedianOfNorms(innovations_, 3), options_.prior_min_sigma_orientation_rad,
-                 options_.prior_max_sigma_orientation_rad);
-  // A prediction from predictions is worth less with each.
-  prior.sigma_position_m *= 1 + num_coasted_;
-  prior.sigma_orientation_rad *= 1 + num_coasted_;
-  return prior;
+double VisualOdometry::StepTo(double time_s) const {
+  constexpr double kNominalStep_s = 0.1;
+  if (recent_.empty()) return kNominalStep_s;
+  const double step_s = time_s - recent_.back().second;
+  const double last_step_s =
+      recent_.size() < 2 ? step_s : recent_.back().second - recent_[recent_.size() - 2].second;
+  // A clock that stands still or jumps says nothing of the motion: take one step as before.
+  const bool is_usable = step_s > 0 && (last_step_s <= 0 || step_s < 10 * last_step_s);
+  if (is_usable) return step_s;
+  return last_step_s > 0 ? last_step_s : kNominalStep_s;
+}
+
+PosePrior VisualOdometry::Predict(double step_s) const {
+  if (recent_.empty()) return motion_.Predict(Se3(), step_s);
+  return motion_.Predict(map_.poses_W_C().at(recent_.back().first), step_s);
+}
+
+void VisualOdometry::DescribePrior(double step_s, OdometryFrame* frame) const {
+  frame->prior_sigma_position_m = motion_.linear_sigma_m_s2() * step_s * step_s;
+  frame->prior_sigma_orientation_rad = motion_.angular_sigma_rad_s2() * step_s * step_s;
+}
+
+std::vector<PersonConstraint> VisualOdometry::Constraints(const StereoImagePair& images,
+                                                          const PosePrior& prior) const {
+  if (recent_.empty() || num_static_ >= options_.max_static_for_people) return {};
+  return people_.Constrain(images.people, prior.T_W_C, prior.covariance);
+}
+
+VisualOdometry::Hypothesis VisualOdometry::FindBest(const View& view,
+                                                    const PosePrior& prior) const {
+  Hypothesis best = TrackFrom(
+      view, prior.T_W_C, {SearchRadius(view.camera, prior), options_.wide_max_hamming, 0.9}, prior);
+  if (const std::optional<Se3> relocated = Relocate(view)) {
+    const Hypothesis other =
+        TrackFrom(view, *relocated, {8, options_.narrow_max_hamming, 0.9}, std::nullopt);
+    if (other.num_inliers > best.num_inliers) best = other;
+  }
+  return best;
+}
+
+double VisualOdometry::SearchRadius(const StereoCamera& camera, const PosePrior& prior) const {
+  constexpr double kSigmas = 2;
+  constexpr double kMaxGrowth = 1;
+  const double turn_rad = std::sqrt(prior.covariance.block<2, 2>(3, 3).trace() / 2);
+  return std::clamp(kSigmas * camera.fx_px * turn_rad, options_.wide_radius_px,
+                    kMaxGrowth * options_.wide_radius_px);
 }
 
 VisualOdometry::Hypothesis VisualOdometry::TrackFrom(const View& view, const Se3& start,
@@ -234,12 +283,26 @@ PoseEstimate VisualOdometry::EstimateFromMatches(const View& view,
   std::vector<PoseObservation> observations;
   for (const LandmarkMatch& match : matches) {
     const Feature& feature = view.left_features[static_cast<std::size_t>(match.feature)];
-    observations.push_back({map_.landmarks().at(match.landmark).p_W,
+    const LocalLandmark& landmark = map_.landmarks().at(match.landmark);
+    observations.push_back({landmark.p_W,
                             {feature.uv_px.x(), feature.uv_px.y(), 0},
                             false,
-                            2 * options_.corner_sigma_px * view.left->scale(feature.level)});
+                            2 * options_.corner_sigma_px * view.left->scale(feature.level),
+                            CovarianceOf(landmark)});
   }
   return EstimatePose(view.camera, observations, start, prior);
+}
+
+PoseEstimate VisualOdometry::EstimateFromSightings(const StereoCamera& camera,
+                                                   const std::vector<LandmarkSighting>& sightings,
+                                                   const Se3& start, const PosePrior& prior) const {
+  std::vector<PoseObservation> observations;
+  for (const LandmarkSighting& sighting : sightings) {
+    const LocalLandmark& landmark = map_.landmarks().at(sighting.id);
+    observations.push_back({landmark.p_W, sighting.uvu_px, sighting.has_right, sighting.sigma_px,
+                            CovarianceOf(landmark)});
+  }
+  return EstimatePose(camera, observations, start, prior);
 }
 
 std::vector<LandmarkSighting> VisualOdometry::Sight(const View& view,
@@ -383,6 +446,8 @@ void VisualOdometry::CreateLandmarks(const View& view, const Se3& T_W_C,
     cells.Take(feature->uv_px, kMaxPerCell);
     LocalLandmark landmark;
     landmark.p_W = T_W_C * *p_C;
+    landmark.created_covariance_W = CreatedCovariance(
+        view.camera, T_W_C, *p_C, options_.aligned_sigma_px * view.left->scale(feature->level));
     landmark.reference_frame = view.images.id;
     landmark.p_C_reference = *p_C;
     landmark.reference_image = view.left;
@@ -400,24 +465,34 @@ void VisualOdometry::CreateLandmarks(const View& view, const Se3& T_W_C,
   }
 }
 
-void VisualOdometry::Remember(FrameId id, double time_s, const Se3& T_W_C) {
+Eigen::Matrix3d VisualOdometry::CreatedCovariance(const StereoCamera& camera, const Se3& T_W_C,
+                                                  const Eigen::Vector3d& p_C,
+                                                  double sigma_px) const {
+  Eigen::Matrix<double, 3, 6> J;  // of the point in C by the tangent of the pose
+  J << Eigen::Matrix3d::Identity(), -Skew(p_C);
+  const Eigen::Matrix3d R_W_C = T_W_C.rotation.toRotationMatrix();
+  return R_W_C *
+         (camera.TriangulationCovariance(p_C, sigma_px) +
+          J * motion_.pose_covariance() * J.transpose()) *
+         R_W_C.transpose();
+}
+
+void VisualOdometry::Remember(FrameId id, double time_s, OdometryFrame* frame) {
+  const Se3& T_W_C = frame->T_W_C;
+  if (!recent_.empty()) {
+    T_O_C_ = T_O_C_ * (map_.poses_W_C().at(recent_.back().first).inverse() * T_W_C);
+  }
+  frame->T_O_C = T_O_C_;
   map_.SetPose(id, T_W_C);
   recent_.emplace_back(id, time_s);
   if (recent_.size() > kRecentFrames) recent_.pop_front();
 }
 
-void VisualOdometry::LearnFrom(const PoseEstimate& estimate, const PosePrior& prior) {
-  // A frame that sees little is off because it sees little: it must not loosen the prior that it
-  // needs most.
-  const Eigen::LDLT<Matrix6d> ldlt(estimate.information);
-  if (ldlt.info() != Eigen::Success || !ldlt.isPositive()) return;
-  const Matrix6d covariance = ldlt.solve(Matrix6d::Identity());
-  const double sigma_position_m = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
-  const double sigma_orientation_rad = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
-  if (!(sigma_position_m < 0.5 * prior.sigma_position_m)) return;
-  if (!(sigma_orientation_rad < 0.5 * prior.sigma_orientation_rad)) return;
-  innovations_.push_back(Boxminus(estimate.T_W_C, prior.T_W_C));
-  if (innovations_.size() > kNumInnovations) innovations_.pop_front();
+bool VisualOdometry::IsBelievable(const PoseEstimate& estimate, const PosePrior& prior) const {
+  constexpr double kMaxChi2 = 22.5;  // of 6 degrees of freedom, one in a thousand
+  if (estimate.num_inliers >= options_.min_inliers_tracking) return true;
+  const Vector6d shift = Boxminus(estimate.T_W_C, prior.T_W_C);
+  return shift.dot(prior.covariance.ldlt().solve(shift)) <= kMaxChi2;
 }
 
 TrackingState VisualOdometry::StateOf(int num_inliers) const {

@@ -8,12 +8,15 @@
 #include <optional>
 #include <vector>
 
+#include "common/features/camera_motion_filter.h"
 #include "common/features/feature_extractor.h"
 #include "common/features/landmark_matcher.h"
 #include "common/features/local_map.h"
+#include "common/features/people_pose.h"
 #include "common/features/pose_estimator.h"
 #include "common/features/stereo_matcher.h"
 #include "common/geometry/stereo_camera.h"
+#include "common/human/people_filter.h"
 
 namespace airdos {
 
@@ -25,16 +28,15 @@ struct VisualOdometryOptions {
   int wide_max_hamming = 64;      ///< bits
   int narrow_max_hamming = 90;    ///< bits
   int min_inliers_tracking = 20;  ///< fewer: STATE_WEAK
-  int min_inliers_weak = 4;       ///< fewer: STATE_COASTING
+  int min_inliers_weak = 3;       ///< fewer: STATE_COASTING
   double min_correlation = 0.8;   ///< of a landmark's patch with the image
   double aligned_sigma_px = 0.2;  ///< of an aligned patch at level 0; grows with the level
   double corner_sigma_px = 0.7;   ///< of a corner whose patch did not align
   int max_observations = 300;     ///< of landmarks a frame
   int observation_cell_px = 16;   ///< at most two observed landmarks in each cell of this size
-  double prior_min_sigma_position_m = 0.03;
-  double prior_max_sigma_position_m = 1.0;
-  double prior_min_sigma_orientation_rad = 0.03;
-  double prior_max_sigma_orientation_rad = 0.5;
+  CameraMotionFilterOptions motion;
+  PeopleFilterOptions people;
+  int max_static_for_people = 30;  ///< with so many static landmarks people have no say
 };
 
 enum class TrackingState { kInitializing, kTracking, kWeak, kCoasting };
@@ -46,6 +48,7 @@ struct StereoImagePair {
   cv::Mat left;
   cv::Mat right;
   cv::Mat mask;  ///< of the left image, not 0 = no static feature may come from here; or empty
+  std::vector<PersonMeasurement> people;  ///< in view; empty where people are not to be used
 };
 
 struct LandmarkSighting {
@@ -57,9 +60,11 @@ struct LandmarkSighting {
 
 struct OdometryFrame {
   TrackingState state = TrackingState::kInitializing;
-  Se3 T_W_C;
-  double prior_sigma_position_m = 0;
+  Se3 T_W_C;  ///< W as the corrections so far have it
+  Se3 T_O_C;  ///< the motions from frame to frame, one after the other: no correction moves it
+  double prior_sigma_position_m = 0;  ///< of constant velocity: by how much it may change a frame
   double prior_sigma_orientation_rad = 0;
+  int num_people = 0;  ///< who had a say in the pose
   int num_detected = 0;
   int num_masked = 0;
   int num_matched = 0;
@@ -71,15 +76,22 @@ struct OdometryFrame {
 /// kept; each landmark is then found again to a fraction of a pixel by its own patch. It never
 /// resets: without support it coasts on the prediction and goes on matching the whole map. W is the
 /// first left camera.
+///
+/// Where static landmarks are few, people help: each moves on with the velocity it had, and where
+/// the camera sees them says where the camera is, as far as they can be relied on.
 class VisualOdometry {
  public:
   explicit VisualOdometry(const VisualOdometryOptions& options)
-      : options_(options), extractor_(options.extractor), map_(options.map) {}
+      : options_(options),
+        extractor_(options.extractor),
+        map_(options.map),
+        motion_(options.motion),
+        people_(options.people) {}
 
   OdometryFrame Process(const StereoCamera& camera, const StereoImagePair& images);
   /// A frame without usable images: coasts.
   OdometryFrame Coast(FrameId id, double time_s);
-  void Apply(const MapCorrection& correction) { map_.Apply(correction); }
+  void Apply(const MapCorrection& correction);
 
   const LocalMap& map() const { return map_; }
 
@@ -92,13 +104,24 @@ class VisualOdometry {
     int num_inliers = 0;
   };
 
-  Se3 Predict(double time_s) const;
-  PosePrior Prior(const Se3& T_W_C_predicted) const;
+  /// Seconds from the last frame; a step as before where the clock stands still or jumps.
+  double StepTo(double time_s) const;
+  PosePrior Predict(double step_s) const;
+  /// People, as long as static landmarks were few in the last frame.
+  std::vector<PersonConstraint> Constraints(const StereoImagePair& images,
+                                            const PosePrior& prior) const;
+  Hypothesis FindBest(const View& view, const PosePrior& prior) const;
+  /// How far from its projection a landmark may be, px: the less is known of the turn, the farther.
+  double SearchRadius(const StereoCamera& camera, const PosePrior& prior) const;
   Hypothesis TrackFrom(const View& view, const Se3& start, const ProjectionSearch& first,
                        const std::optional<PosePrior>& prior) const;
   std::optional<Se3> Relocate(const View& view) const;
   PoseEstimate EstimateFromMatches(const View& view, const std::vector<LandmarkMatch>& matches,
                                    const Se3& start, const std::optional<PosePrior>& prior) const;
+  PoseEstimate EstimateFromSightings(const StereoCamera& camera,
+                                     const std::vector<LandmarkSighting>& sightings,
+                                     const Se3& start, const PosePrior& prior) const;
+  void DescribePrior(double step_s, OdometryFrame* frame) const;
   std::vector<LandmarkSighting> Sight(const View& view, const Hypothesis& hypothesis);
   std::optional<LandmarkSighting> SightOne(const View& view, const VisibleLandmark& visible,
                                            const Feature* feature) const;
@@ -107,18 +130,23 @@ class VisualOdometry {
                        const std::vector<LandmarkSighting>& sightings);
   void CreateLandmarks(const View& view, const Se3& T_W_C,
                        std::vector<LandmarkSighting>* sightings);
-  void Remember(FrameId id, double time_s, const Se3& T_W_C);
-  /// Notes by how much the prediction was off, if the frame's own measurements say it better than
-  /// the prior did.
-  void LearnFrom(const PoseEstimate& estimate, const PosePrior& prior);
+  Eigen::Matrix3d CreatedCovariance(const StereoCamera& camera, const Se3& T_W_C,
+                                    const Eigen::Vector3d& p_C, double sigma_px) const;
+  /// Also gives the frame its T_O_C.
+  void Remember(FrameId id, double time_s, OdometryFrame* frame);
+  /// Few landmarks that agree by chance can put the camera anywhere: such a pose must be one that
+  /// the prior allows.
+  bool IsBelievable(const PoseEstimate& estimate, const PosePrior& prior) const;
   TrackingState StateOf(int num_inliers) const;
 
   const VisualOdometryOptions options_;
   FeatureExtractor extractor_;
   LocalMap map_;
+  CameraMotionFilter motion_;
+  PeopleFilter people_;
+  Se3 T_O_C_;                                      // of the last frame
+  int num_static_ = 0;                             // inliers of the last frame
   std::deque<std::pair<FrameId, double>> recent_;  // frame and time, newest last
-  int num_coasted_ = 0;                            // frames in a row
-  std::deque<Vector6d> innovations_;  // pose minus prediction of the last tracked frames
 };
 
 }  // namespace airdos

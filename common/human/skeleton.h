@@ -65,6 +65,11 @@ inline constexpr std::array<RigidPart, kNumParts> kParts = {
      {2, {kLeftHip, kLeftKnee, -1, -1, -1}},
      {2, {kLeftKnee, kLeftAnkle, -1, -1, -1}}}};
 
+/// The joints that share one velocity: torso and head. Limbs swing.
+inline constexpr int kNumBodyJoints = 6;
+inline constexpr std::array<int, kNumBodyJoints> kBodyJoints = {
+    kNeck, kRightShoulder, kLeftShoulder, kRightHip, kLeftHip, kNose};
+
 }  // namespace airdos
 
 #endif  // AIRDOS_COMMON_HUMAN_SKELETON_H_

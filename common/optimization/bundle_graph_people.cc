@@ -7,10 +7,6 @@
 namespace airdos {
 namespace {
 
-/// The joints that share one velocity: torso and head. Limbs swing.
-constexpr std::array<int, 6> kBodyJoints = {kNeck,     kRightShoulder, kLeftShoulder,
-                                            kRightHip, kLeftHip,       kNose};
-
 using Pair = std::pair<BundleProblem::JointState*, BundleProblem::JointState*>;
 
 /// The joints of `wanted` (-1: none) that were seen before and after.

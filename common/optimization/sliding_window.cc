@@ -13,13 +13,6 @@
 namespace airdos {
 namespace {
 
-/// Standard deviation of normal numbers around zero, from the median of their sizes.
-double RobustSigma(std::vector<double> sizes) {
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return 1.4826 * *middle;
-}
-
 int CountNewest(const BundleProblem& problem) {
   const int newest = static_cast<int>(problem.frames.size()) - 1;
   return static_cast<int>(
@@ -65,15 +58,16 @@ SlidingWindowOptimizer::SlidingWindowOptimizer(const SlidingWindowOptions& optio
 
 FrameResult SlidingWindowOptimizer::Process(const FrameInput& input) {
   const bool is_first = trajectory_.empty();
+  LearnCarrier(input);
   Prediction prediction;
   if (!is_first) prediction = Predict(input);
-  const Se3 T_W_C_start = is_first ? input.T_W_C_odometry.value_or(Se3())
-                                   : PoseOf(prediction.base) * prediction.T_Cbase_C;
+  const Se3 T_W_C_start =
+      is_first ? input.T_O_C.value_or(Se3()) : PoseOf(prediction.base) * prediction.T_Cbase_C;
   map_.AddFrame(camera_, input, T_W_C_start);
   if (options_.bundle.use_people) people_.AddFrame(camera_, input);
-  if (input.T_W_C_odometry) {
+  if (input.T_O_C) {
     odometry_frame_ = input.id;
-    T_W_C_odometry_ = input.T_W_C_odometry;
+    T_O_C_ = input.T_O_C;
   }
 
   FrameEstimate estimate;
@@ -123,7 +117,6 @@ std::vector<LandmarkId> SlidingWindowOptimizer::Adjust(const Prediction& predict
     people_.Absorb(problem_);
     estimate->T_W_C_with_people = problem_.frames.back().T_W_C;
     estimate->trusts_people =
-        KnowsCarrier() &&
         TrustsPeople(options_.trust, estimate->num_static_observations, summary, with_people,
                      Boxminus(estimate->T_W_C_with_people, T_W_C_adjusted));
     if (estimate->trusts_people) estimate->covariance = *with_people.newest_covariance;
@@ -154,8 +147,8 @@ SlidingWindowOptimizer::Prediction SlidingWindowOptimizer::Predict(const FrameIn
   const bool knows_base =
       std::any_of(trajectory_.begin(), trajectory_.end(),
                   [this](const TimedPose& entry) { return entry.id == odometry_frame_; });
-  if (input.T_W_C_odometry && T_W_C_odometry_ && knows_base) {
-    return {odometry_frame_, T_W_C_odometry_->inverse() * *input.T_W_C_odometry};
+  if (input.T_O_C && T_O_C_ && knows_base) {
+    return {odometry_frame_, T_O_C_->inverse() * *input.T_O_C};
   }
   const TimedPose& last = trajectory_.back();
   if (trajectory_.size() < 2) return {last.id, Se3()};
@@ -184,50 +177,26 @@ void SlidingWindowOptimizer::UpdateTrajectory() {
       entry->T_W_C = frame.T_W_C;
     }
   }
-  const int kept = std::max(options_.camera_motion.history_frames, options_.map.window_frames + 1);
+  const int kept = options_.map.window_frames + 1;
   while (static_cast<int>(trajectory_.size()) > kept) trajectory_.pop_front();
 }
 
-bool SlidingWindowOptimizer::KnowsCarrier() const {
-  return static_cast<int>(trajectory_.size()) >= std::max(options_.camera_motion.min_frames, 3);
-}
-
-std::optional<AccelerationSigma> SlidingWindowOptimizer::EstimateAccelerationSigma() const {
-  const CameraMotionOptions& options = options_.camera_motion;
-  if (!KnowsCarrier()) return std::nullopt;
-  std::vector<double> linear, angular;
-  for (std::size_t i = 2; i < trajectory_.size(); ++i) {
-    const TimedPose &a = trajectory_[i - 2], &b = trajectory_[i - 1], &c = trajectory_[i];
-    const double step_1_s = b.time_s - a.time_s, step_2_s = c.time_s - b.time_s;
-    if (!(step_1_s > 0 && step_2_s > 0)) continue;
-    // With sigmas of one, the residuals of the factor are the accelerations themselves.
-    const CameraAccelerationFactor factor(step_1_s, step_2_s, {1.0, 1.0});
-    const PoseBlock poses[] = {ToPoseBlock(a.T_W_C), ToPoseBlock(b.T_W_C), ToPoseBlock(c.T_W_C)};
-    const double* parameters[] = {poses[0].data(), poses[1].data(), poses[2].data()};
-    Vector6d acceleration;
-    factor.Evaluate(parameters, acceleration.data(), nullptr);
-    for (int axis = 0; axis < 3; ++axis) {
-      linear.push_back(std::abs(acceleration[axis]));
-      angular.push_back(std::abs(acceleration[3 + axis]));
-    }
-  }
-  if (linear.empty()) return std::nullopt;
-  const auto limit = [&options](double spread, double floor, double ceiling) {
-    return std::min(std::max(options.sigma_factor * spread, floor), std::max(floor, ceiling));
-  };
-  return AccelerationSigma{
-      limit(RobustSigma(linear), options.floor.linear_m_s2, options.ceiling.linear_m_s2),
-      limit(RobustSigma(angular), options.floor.angular_rad_s2, options.ceiling.angular_rad_s2)};
+void SlidingWindowOptimizer::LearnCarrier(const FrameInput& input) {
+  if (trajectory_.empty() || !input.motion_sigma_position_m || !input.motion_sigma_orientation_rad)
+    return;
+  const double step_s = input.time_s - trajectory_.back().time_s;
+  if (!(step_s > 0)) return;
+  const double factor = options_.camera_motion.sigma_factor / (step_s * step_s);
+  carrier_ = AccelerationSigma{factor * *input.motion_sigma_position_m,
+                               factor * *input.motion_sigma_orientation_rad};
 }
 
 void SlidingWindowOptimizer::AddAccelerations(BundleProblem* problem) const {
-  if (!options_.camera_motion.use_acceleration) return;
-  const std::optional<AccelerationSigma> sigma = EstimateAccelerationSigma();
-  if (!sigma) return;
+  if (!options_.camera_motion.use_acceleration || !carrier_) return;
   const int num_frames = static_cast<int>(problem->frames.size());
   const int first = num_frames - static_cast<int>(map_.window().size());
   for (int i = first + 2; i < num_frames; ++i) {
-    problem->accelerations.push_back({{i - 2, i - 1, i}, *sigma});
+    problem->accelerations.push_back({{i - 2, i - 1, i}, *carrier_});
   }
 }
 

@@ -16,13 +16,9 @@ namespace airdos {
 
 struct CameraMotionOptions {
   bool use_acceleration = true;  ///< factor between three consecutive frames of the window
-  /// The sigma follows the carrier: `sigma_factor` times the robust spread of the accelerations of
-  /// the last frames, within [floor, ceiling]; no factor before `min_frames` frames.
-  double sigma_factor = 2.0;
-  AccelerationSigma floor{2.0, 5.0};
-  AccelerationSigma ceiling{50.0, 100.0};
-  int min_frames = 8;
-  int history_frames = 40;
+  /// Its sigma, of the one that the front end predicts the newest frame with (which is generous). A
+  /// front end that gives none gets no factor.
+  double sigma_factor = 0.6;
 };
 
 struct SlidingWindowOptions {
@@ -108,17 +104,15 @@ class SlidingWindowOptimizer {
   };
 
   Prediction Predict(const FrameInput& input) const;
-  /// As optimized; the frame must be one of the last `history_frames`.
+  /// As optimized; the frame must be one of those in trajectory_.
   const Se3& PoseOf(FrameId id) const;
   /// Adjusts without and with people; fills the estimate and takes the trusted result into the map.
   /// `prediction` stands in where the newest frame sees nothing static. Returns the bad landmarks.
   std::vector<LandmarkId> Adjust(const Prediction& prediction, FrameEstimate* estimate);
   /// The adjustment together with people, from the solved one without.
   BundleProblem ProblemWithPeople(const BundleProblem& without_people, bool is_static_strong) const;
-  /// There is enough of a trajectory to say how the camera moves.
-  bool KnowsCarrier() const;
   void AddAccelerations(BundleProblem* problem) const;
-  std::optional<AccelerationSigma> EstimateAccelerationSigma() const;
+  void LearnCarrier(const FrameInput& input);
   /// The poses of the window into the trajectory.
   void UpdateTrajectory();
   MapChanges CollectChanges(std::vector<LandmarkId> removed);
@@ -131,7 +125,8 @@ class SlidingWindowOptimizer {
   BundleProblem problem_;             // the last one with people
   std::deque<TimedPose> trajectory_;  // the last frames, oldest first, as optimized
   FrameId odometry_frame_;            // the last one with odometry
-  std::optional<Se3> T_W_C_odometry_;
+  std::optional<Se3> T_O_C_;
+  std::optional<AccelerationSigma> carrier_;  // how the front end says that the camera moves
 };
 
 }  // namespace airdos

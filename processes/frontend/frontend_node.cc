@@ -1,5 +1,6 @@
 #include "processes/frontend/frontend_node.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
@@ -28,7 +29,7 @@ static_features_t ToMessage(const Header& header, const OdometryFrame& frame) {
   message.seq = header.seq;
   message.session = header.session;
   message.tracking_state = ToMessage(frame.state);
-  FromSe3(frame.T_W_C, message.position_W_C, message.orientation_W_C);
+  FromSe3(frame.T_O_C, message.position_O_C, message.orientation_O_C);
   message.sigma_position_m = frame.prior_sigma_position_m;
   message.sigma_orientation_rad = frame.prior_sigma_orientation_rad;
   message.num_detected = frame.num_detected;
@@ -66,6 +67,9 @@ FrontendNode::FrontendNode(const FrontendOptions& options)
     : FrameNode("frontend"), options_(options) {
   Join<image_t>(channel::kCameraLeft, &FrontendInputs::left);
   Join<image_t>(channel::kCameraRight, &FrontendInputs::right);
+  if (options_.use_people) {
+    Join<human_observations_t>(channel::kHumanObservations, &FrontendInputs::humans);
+  }
   if (options_.use_masks) Join<person_mask_t>(channel::kPersonMask, &FrontendInputs::mask);
   JoinCalibration();
   if (options_.feedback_lag > 0) {
@@ -129,6 +133,28 @@ void FrontendNode::ApplyUpdates() {
   }
 }
 
+std::vector<PersonMeasurement> FrontendNode::People(const FrontendInputs& inputs) {
+  std::vector<PersonMeasurement> people;
+  if (!inputs.humans) return people;
+  for (const human_observation_t& human : inputs.humans->humans) {
+    PersonMeasurement person{HumanId{human.track_id}, {}};
+    for (std::size_t i = 0; i < human.joint_id.size(); ++i) {
+      const std::vector<float>& s = human.covariance_C[i];
+      PersonMeasurement::Joint joint;
+      joint.joint = human.joint_id[i];
+      joint.p_C = {human.x_C_m[i], human.y_C_m[i], human.z_C_m[i]};
+      joint.covariance_C << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+      const bool is_covariance =
+          Eigen::LLT<Eigen::Matrix3d>(joint.covariance_C).info() == Eigen::Success;
+      if (joint.p_C.allFinite() && joint.covariance_C.allFinite() && is_covariance) {
+        person.joints.push_back(joint);
+      }
+    }
+    people.push_back(std::move(person));
+  }
+  return people;
+}
+
 std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
                                                     const FrontendInputs& inputs) {
   if (!inputs.left || !inputs.right) return std::nullopt;
@@ -147,7 +173,8 @@ std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
                          static_cast<double>(header.utime - first_.utime) * 1e-6,
                          *left,
                          *right,
-                         {}};
+                         {},
+                         People(inputs)};
   if (!inputs.mask || inputs.mask->encoding == person_mask_t::ENCODING_NONE) return images;
   const std::optional<cv::Mat> mask = DecodeMask(*inputs.mask);
   if (!fits(mask, channel::kPersonMask)) return images;
@@ -192,18 +219,30 @@ FrontendOptions ReadFrontendOptions(ConfigReader* config) {
   config->Read("tracking.wide_max_hamming_bits", &odometry.wide_max_hamming, 1, 256);
   config->Read("tracking.narrow_max_hamming_bits", &odometry.narrow_max_hamming, 1, 256);
   config->Read("tracking.min_inliers_tracking", &odometry.min_inliers_tracking, 3, 1000);
-  config->Read("tracking.min_inliers_weak", &odometry.min_inliers_weak, 3, 1000);
+  config->Read("tracking.min_inliers_weak", &odometry.min_inliers_weak, 1, 1000);
   config->Read("tracking.min_correlation", &odometry.min_correlation, 0, 1);
   config->Read("tracking.aligned_sigma_px", &odometry.aligned_sigma_px, 0.01, 10);
   config->Read("tracking.corner_sigma_px", &odometry.corner_sigma_px, 0.01, 10);
   config->Read("tracking.max_observations", &odometry.max_observations, 3, 5000);
   config->Read("tracking.observation_cell_px", &odometry.observation_cell_px, 4, 256);
-  config->Read("prior.min_sigma_position_m", &odometry.prior_min_sigma_position_m, 1e-4, 100);
-  config->Read("prior.max_sigma_position_m", &odometry.prior_max_sigma_position_m, 1e-4, 100);
-  config->Read("prior.min_sigma_orientation_rad", &odometry.prior_min_sigma_orientation_rad, 1e-4,
-               3);
-  config->Read("prior.max_sigma_orientation_rad", &odometry.prior_max_sigma_orientation_rad, 1e-4,
-               3);
+  config->Read("motion.linear_start_m_s2", &odometry.motion.linear_start_m_s2, 1e-3, 1000);
+  config->Read("motion.angular_start_rad_s2", &odometry.motion.angular_start_rad_s2, 1e-3, 1000);
+  config->Read("motion.linear_floor_m_s2", &odometry.motion.linear_floor_m_s2, 1e-3, 1000);
+  config->Read("motion.linear_ceiling_m_s2", &odometry.motion.linear_ceiling_m_s2, 1e-3, 1000);
+  config->Read("motion.angular_floor_rad_s2", &odometry.motion.angular_floor_rad_s2, 1e-3, 1000);
+  config->Read("motion.angular_ceiling_rad_s2", &odometry.motion.angular_ceiling_rad_s2, 1e-3,
+               1000);
+  config->Read("motion.initial_speed_m_s", &odometry.motion.initial_speed_m_s, 1e-3, 1000);
+  config->Read("motion.initial_turn_rad_s", &odometry.motion.initial_turn_rad_s, 1e-3, 1000);
+  config->Read("motion.memory_s", &odometry.motion.memory_s, 0.01, 1e6);
+  config->Read("people.use", &options.use_people);
+  config->Read("people.max_static", &odometry.max_static_for_people, 0, 10000);
+  config->Read("people.acceleration_m_s2", &odometry.people.acceleration_m_s2, 1e-3, 100);
+  config->Read("people.initial_speed_m_s", &odometry.people.initial_speed_m_s, 1e-3, 100);
+  config->Read("people.wobble_m", &odometry.people.wobble_m, 1e-4, 10);
+  config->Read("people.max_joint_sigmas", &odometry.people.max_joint_sigmas, 0.1, 100);
+  config->Read("people.max_missed_frames", &odometry.people.max_missed_frames, 0, 1000);
+  config->Read("people.min_seen_frames", &odometry.people.min_seen_frames, 1, 1000);
   return options;
 }
 

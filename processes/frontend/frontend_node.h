@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "airdos/human_observations_t.hpp"
 #include "airdos/image_t.hpp"
 #include "airdos/map_update_t.hpp"
 #include "airdos/person_mask_t.hpp"
@@ -22,6 +23,7 @@ namespace airdos {
 struct FrontendOptions {
   VisualOdometryOptions odometry;
   bool use_masks = true;
+  bool use_people = true;  ///< in the pose of a frame that sees little else
   int mask_dilation_px =
       8;  ///< masks are ragged: a border of so many px around people is left out as well
   /// MAP_UPDATE of the frame so many frames back must be there before a frame starts; 0 = no
@@ -35,12 +37,13 @@ struct FrontendInputs {
   std::optional<image_t> left;
   std::optional<image_t> right;
   std::optional<person_mask_t> mask;
+  std::optional<human_observations_t> humans;
 };
 
 /// Static landmarks and camera pose from stereo images: CAMERA_LEFT, CAMERA_RIGHT, CALIBRATION,
-/// PERSON_MASK (if masks are used) and MAP_UPDATE in, STATIC_FEATURES out. The optimizer's
-/// corrections are applied at a fixed lag of frames, so that the result does not depend on how fast
-/// the optimizer is. A frame without both images coasts.
+/// PERSON_MASK (if masks are used), HUMAN_OBSERVATIONS (if people are used) and MAP_UPDATE in,
+/// STATIC_FEATURES out. The optimizer's corrections are applied at a fixed lag of frames, so that
+/// the result does not depend on how fast the optimizer is. A frame without both images coasts.
 class FrontendNode : public FrameNode<FrontendInputs> {
  public:
   explicit FrontendNode(const FrontendOptions& options);
@@ -55,6 +58,7 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   /// Frame whose update must be there before the next frame starts.
   std::optional<std::int64_t> RequiredUpdate() const;
   void ApplyUpdates();
+  static std::vector<PersonMeasurement> People(const FrontendInputs& inputs);
   std::optional<StereoImagePair> Images(const Header& header, const FrontendInputs& inputs);
 
   const FrontendOptions options_;

@@ -218,8 +218,8 @@ std::string Validate(const static_features_t& message) {
   Checker check(message);
   check.Range("tracking_state", message.tracking_state, static_features_t::STATE_INITIALIZING,
               static_features_t::STATE_COASTING);
-  check.Position("position_W_C", message.position_W_C);
-  check.Quaternion("orientation_W_C", message.orientation_W_C);
+  check.Position("position_O_C", message.position_O_C);
+  check.Quaternion("orientation_O_C", message.orientation_O_C);
   check.Range("sigma_position_m", message.sigma_position_m, 0, kMaxLength_m);
   check.Range("sigma_orientation_rad", message.sigma_orientation_rad, 0, 1e3);
   check.Count("num_detected", message.num_detected, INT32_MAX);

@@ -26,9 +26,13 @@ bool IsUsable(const Eigen::Vector3d& uvu_px, bool has_right, double sigma_px) {
 }
 
 void AddFeatures(const static_features_t& message, FrameInput* input) {
-  const Se3 T_W_C = ToSe3(message.position_W_C, message.orientation_W_C);
-  if (T_W_C.translation.allFinite() && T_W_C.rotation.coeffs().allFinite()) {
-    input->T_W_C_odometry = T_W_C;
+  const Se3 T_O_C = ToSe3(message.position_O_C, message.orientation_O_C);
+  if (T_O_C.translation.allFinite() && T_O_C.rotation.coeffs().allFinite()) {
+    input->T_O_C = T_O_C;
+  }
+  if (message.sigma_position_m > 0 && message.sigma_orientation_rad > 0) {  // not NaN
+    input->motion_sigma_position_m = message.sigma_position_m;
+    input->motion_sigma_orientation_rad = message.sigma_orientation_rad;
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(message.num_features); ++i) {
     StaticObservation feature;

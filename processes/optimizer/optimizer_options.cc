@@ -29,13 +29,6 @@ void ReadSolver(ConfigReader* config, BundleOptions* bundle) {
 void ReadCameraMotion(ConfigReader* config, CameraMotionOptions* motion) {
   config->Read("camera_motion.use_acceleration", &motion->use_acceleration);
   config->Read("camera_motion.sigma_factor", &motion->sigma_factor, 0, 1000);
-  config->Read("camera_motion.linear_floor_m_s2", &motion->floor.linear_m_s2, kMinSigma, 1e6);
-  config->Read("camera_motion.linear_ceiling_m_s2", &motion->ceiling.linear_m_s2, kMinSigma, 1e6);
-  config->Read("camera_motion.angular_floor_rad_s2", &motion->floor.angular_rad_s2, kMinSigma, 1e6);
-  config->Read("camera_motion.angular_ceiling_rad_s2", &motion->ceiling.angular_rad_s2, kMinSigma,
-               1e6);
-  config->Read("camera_motion.min_frames", &motion->min_frames, 3, 1000);
-  config->Read("camera_motion.history_frames", &motion->history_frames, 3, 10000);
 }
 
 void ReadPeople(ConfigReader* config, SlidingWindowOptions* window) {

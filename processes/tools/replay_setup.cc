@@ -60,6 +60,8 @@ Assignments AssignmentsOf(const ReplaySetup& setup) {
   std::string masks = setup.masks;
   if (!setup.people.empty()) {
     assignments["optimizer"].push_back("people.mode=" + setup.people);
+    const bool is_on = setup.people == "on";
+    assignments["frontend"].push_back(std::string("people.use=") + (is_on ? "true" : "false"));
     if (masks.empty()) masks = setup.people == "off" ? "off" : "on";
   }
   if (!masks.empty()) {

@@ -23,7 +23,7 @@ BundleProblem MakeProblem(const SyntheticScene& scene, bool with_people) {
   WindowMap map(map_options);
   HumanTracks people(people_options);
   for (const FrameInput& input : scene.frames) {
-    map.AddFrame(scene.camera, input, *input.T_W_C_odometry);
+    map.AddFrame(scene.camera, input, *input.T_O_C);
     people.AddFrame(scene.camera, input);
   }
   BundleProblem problem = map.BuildProblem(scene.camera);

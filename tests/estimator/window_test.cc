@@ -81,7 +81,7 @@ TEST(SlidingWindowTest, PeopleCarryTheCameraWhereTheStaticSceneIsGone) {
     std::normal_distribution<double> normal(0, 0.1);
     for (std::size_t k = 13; k < 17; ++k) {  // the front end coasts, and badly
       scene.frames[k].features.clear();
-      scene.frames[k].T_W_C_odometry->translation +=
+      scene.frames[k].T_O_C->translation +=
           Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
     }
     const std::vector<FrameResult> results = RunAll(SlidingWindowOptions(), scene);
@@ -187,7 +187,7 @@ TEST(WindowMapTest, MemoryIsBounded) {
     for (StaticObservation& feature : input.features) {
       feature.id.value += 1000 * (input.id.value / 10);
     }
-    map.AddFrame(scene.camera, input, *input.T_W_C_odometry);
+    map.AddFrame(scene.camera, input, *input.T_O_C);
     EXPECT_LE(map.frames().size(), 16U);
     EXPECT_LE(map.window().size(), 12U);
     EXPECT_LT(map.landmarks().size(), 600U);

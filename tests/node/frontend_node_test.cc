@@ -90,7 +90,7 @@ std::vector<std::vector<std::uint8_t>> Outputs(const std::vector<Stream>& stream
       const auto& bytes = outputs[num_answered++];
       EXPECT_TRUE(Decode(bytes.data(), bytes.size(), &features));
       map_update_t update = Update(features.seq);
-      Se3 T_W_C = ToSe3(features.position_W_C, features.orientation_W_C);
+      Se3 T_W_C = ToSe3(features.position_O_C, features.orientation_O_C);
       T_W_C.translation.x() += 0.002;
       AddFrame(features.seq, T_W_C, &update);
       Send(channel::kMapUpdate, update, &node);

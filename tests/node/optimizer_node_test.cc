@@ -51,7 +51,7 @@ Message WithHeader(const FrameInput& input) {
 static_features_t Features(const FrameInput& input) {
   auto message = WithHeader<static_features_t>(input);
   message.tracking_state = +static_features_t::STATE_TRACKING;
-  FromSe3(*input.T_W_C_odometry, message.position_W_C, message.orientation_W_C);
+  FromSe3(*input.T_O_C, message.position_O_C, message.orientation_O_C);
   message.sigma_position_m = 0.05;
   message.sigma_orientation_rad = 0.05;
   message.num_features = static_cast<std::int32_t>(input.features.size());
@@ -260,7 +260,7 @@ TEST(OptimizerNodeTest, EmptyFramesDoNotStopIt) {
   EXPECT_EQ(estimates.back().status, +state_estimate_t::STATUS_PREDICTED);
   // The front end's steps are passed on.
   const Se3 T_W_C = ToSe3(estimates.back().position_W_C, estimates.back().orientation_W_C);
-  EXPECT_LT(Boxminus(T_W_C, *scene.frames.back().T_W_C_odometry).norm(), 1e-9);
+  EXPECT_LT(Boxminus(T_W_C, *scene.frames.back().T_O_C).norm(), 1e-9);
 }
 
 TEST(OptimizerNodeTest, ANewSessionStartsANewMap) {

@@ -93,7 +93,7 @@ TEST(ValidateTest, StaticFeatures) {
   using M = static_features_t;
   ExpectReject<M>("tracking_state 0", [](M* m) { m->tracking_state = 0; });
   ExpectReject<M>("tracking_state 5", [](M* m) { m->tracking_state = 5; });
-  ExpectReject<M>("position_W_C nan", [](M* m) { m->position_W_C[2] = kNan; });
+  ExpectReject<M>("position_O_C nan", [](M* m) { m->position_O_C[2] = kNan; });
   ExpectReject<M>("orientation_W_C 1.1", [](M* m) { m->orientation_W_C[0] = 1.1; });
   ExpectReject<M>("orientation_W_C nan", [](M* m) { m->orientation_W_C[0] = kNan; });
   ExpectReject<M>("sigma_position_m", [](M* m) { m->sigma_position_m = -1; });

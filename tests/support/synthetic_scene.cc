@@ -147,20 +147,20 @@ SyntheticScene MakeSyntheticScene(const SyntheticSceneOptions& options) {
     scene.static_points_W.push_back(RandomPoint(options, &generator));
   }
   AddWalkers(options, &generator, &scene);
-  Se3 T_W_C_odometry;
+  Se3 T_O_C;
   for (int frame = 0; frame < options.num_frames; ++frame) {
     const auto k = static_cast<std::size_t>(frame);
     if (frame > 0) {
       Vector6d noise;
       noise << Noise(&generator, options.odometry_sigma_m),
           Noise(&generator, options.odometry_sigma_rad);
-      T_W_C_odometry =
-          Boxplus(T_W_C_odometry * (scene.T_W_C[k - 1].inverse() * scene.T_W_C[k]), noise);
+      T_O_C =
+          Boxplus(T_O_C * (scene.T_W_C[k - 1].inverse() * scene.T_W_C[k]), noise);
     }
     FrameInput input;
     input.id.value = frame;
     input.time_s = frame * options.step_s;
-    input.T_W_C_odometry = T_W_C_odometry;
+    input.T_O_C = T_O_C;
     ObserveStatic(options, scene, frame, &generator, &input);
     ObservePeople(options, scene, frame, &generator, &input);
     scene.frames.push_back(input);

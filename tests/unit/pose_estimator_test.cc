@@ -156,7 +156,7 @@ TEST(PoseEstimator, WithoutAnythingTheStartComesBack) {
 
 TEST(PoseEstimator, ThePriorAloneIsReturned) {
   const PoseEstimate estimate =
-      EstimatePose(kCamera, {}, StartOff(), PosePrior{TruePose(), 0.04, 0.05});
+      EstimatePose(kCamera, {}, StartOff(), IsotropicPrior(TruePose(), 0.04, 0.05));
   EXPECT_LT(Error(estimate.T_W_C, TruePose()), 1e-9);
 }
 
@@ -164,7 +164,7 @@ TEST(PoseEstimator, ThePriorHoldsWhatTwoPointsLeaveFree) {
   // Two points leave the turn about the line between them free: it comes from the prior, which is
   // right about it; the rest from the points.
   const std::vector<PoseObservation> observations = Observe(2, 0, 5);
-  const PosePrior prior{TruePose(), 0.04, 0.05};
+  const PosePrior prior = IsotropicPrior(TruePose(), 0.04, 0.05);
   EXPECT_LT(Error(EstimatePose(kCamera, observations, StartOff(), prior).T_W_C, TruePose()), 1e-6);
 }
 
@@ -176,10 +176,11 @@ TEST(PoseEstimator, ThePriorIsWeighedAgainstTheObservations) {
   std::vector<PoseObservation> observations = Observe(4, 0, 2);
   for (PoseObservation& observation : observations) observation.sigma_px = 5;
   const Se3 mean = Boxplus(TruePose(), off);
-  const double tight = Error(
-      EstimatePose(kCamera, observations, mean, PosePrior{mean, 0.04, 0.05}).T_W_C, TruePose());
-  const double wide =
-      Error(EstimatePose(kCamera, observations, mean, PosePrior{mean, 0.4, 0.5}).T_W_C, TruePose());
+  const double tight =
+      Error(EstimatePose(kCamera, observations, mean, IsotropicPrior(mean, 0.04, 0.05)).T_W_C,
+            TruePose());
+  const double wide = Error(
+      EstimatePose(kCamera, observations, mean, IsotropicPrior(mean, 0.4, 0.5)).T_W_C, TruePose());
   EXPECT_LT(wide, 0.2 * tight);
   EXPECT_LT(tight, off.norm());
   EXPECT_GT(tight, 0.05 * off.norm());
@@ -192,7 +193,7 @@ TEST(PoseEstimator, EachSigmaOfThePriorHoldsItsOwnAxes) {
   observation.uvu_px = kCamera.ProjectStereo({0.4, 0, 8});
   observation.sigma_px = 0.1;
   const auto moved = [&](double sigma_position_m, double sigma_orientation_rad) {
-    const PosePrior prior{TruePose(), sigma_position_m, sigma_orientation_rad};
+    const PosePrior prior = IsotropicPrior(TruePose(), sigma_position_m, sigma_orientation_rad);
     const std::vector<PoseObservation> observations = {observation};
     return Boxminus(EstimatePose(kCamera, observations, TruePose(), prior).T_W_C, TruePose());
   };
@@ -221,7 +222,7 @@ TEST(PoseEstimator, OnlyPointsBehindTheCameraGiveThePrior) {
   for (PoseObservation& observation : observations)
     observation.p_W = 2 * TruePose().translation - observation.p_W;
   const PoseEstimate estimate =
-      EstimatePose(kCamera, observations, TruePose(), PosePrior{TruePose(), 0.04, 0.05});
+      EstimatePose(kCamera, observations, TruePose(), IsotropicPrior(TruePose(), 0.04, 0.05));
   EXPECT_LT(Error(estimate.T_W_C, TruePose()), 1e-9);
   EXPECT_EQ(estimate.num_inliers, 0);
 }
