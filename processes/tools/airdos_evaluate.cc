@@ -1,17 +1,21 @@
 // airdos-evaluate: how good an estimate is, given the truth.
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <string>
+#include <vector>
 
 #include "common/evaluation/people_report.h"
 #include "common/evaluation/trajectory_plot.h"
 #include "common/evaluation/trajectory_report.h"
+#include "common/simulation/settings.h"
 #include "common/util/error.h"
 #include "common/util/version.h"
+#include "processes/tools/ablation_report.h"
 
 namespace airdos {
 namespace {
@@ -119,6 +123,40 @@ void RunPeople(const PeopleArguments& arguments) {
   if (!arguments.json.empty()) WriteJson(ToJson(report), arguments.json);
 }
 
+struct AblationArguments {
+  std::vector<std::string> groups = PaperGroups();
+  int num_sequences = 10;
+  std::uint64_t seed = 1;
+  std::string json;
+};
+
+CLI::App* AddAblationCommand(CLI::App* app, AblationArguments* arguments) {
+  CLI::App* const command = app->add_subcommand(
+      "ablation", "The paper's table: bundle adjustment of simulated sequences, with and without");
+  command->add_option("--groups", arguments->groups, "settings of the simulator")
+      ->check(CLI::IsMember(SettingNames()))
+      ->capture_default_str();
+  command->add_option("--sequences", arguments->num_sequences, "of each group")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "of each group's first sequence")
+      ->capture_default_str();
+  command->add_option("--json", arguments->json, "file to write all figures to");
+  return command;
+}
+
+void RunAblationCommand(const AblationArguments& arguments) {
+  nlohmann::json json;
+  for (const std::string& setting : arguments.groups) {
+    const AblationGroup group =
+        RunAblation({}, setting, arguments.seed, arguments.num_sequences, nullptr);
+    std::fputs((ToTable(group) + "\n").c_str(), stdout);
+    std::fflush(stdout);
+    json.push_back(ToJson(group));
+  }
+  if (!arguments.json.empty()) WriteJson(json, arguments.json);
+}
+
 }  // namespace
 }  // namespace airdos
 
@@ -131,10 +169,14 @@ int main(int argc, char** argv) {
   airdos::PeopleArguments people;
   CLI::App* const of_trajectory = airdos::AddTrajectoryCommand(&app, &trajectory);
   airdos::AddPeopleCommand(&app, &people);
+  airdos::AblationArguments ablation;
+  CLI::App* const of_ablation = airdos::AddAblationCommand(&app, &ablation);
   try {
     app.parse(argc, argv);
     if (of_trajectory->parsed()) {
       airdos::RunTrajectory(trajectory);
+    } else if (of_ablation->parsed()) {
+      airdos::RunAblationCommand(ablation);
     } else {
       airdos::RunPeople(people);
     }

@@ -1,0 +1,55 @@
+#ifndef AIRDOS_PROCESSES_TOOLS_ABLATION_H_
+#define AIRDOS_PROCESSES_TOOLS_ABLATION_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/optimization/bundle_adjuster.h"
+#include "common/simulation/feature_simulator.h"
+
+namespace airdos {
+
+/// What a row of the paper's table leaves out.
+enum class AblationRow { kBefore, kStatic, kWithoutMotion, kWithoutRigidity, kFull };
+const char* NameOf(AblationRow row);
+const std::vector<AblationRow>& AblationRows();
+
+/// Root mean squares over one sequence.
+struct AblationErrors {
+  double ate_unaligned_m = 0;  ///< positions, the first pose being the truth
+  double ate_aligned_m = 0;    ///< after SE(3) alignment
+  double rpe_m = 0;            ///< per frame
+  double rpe_deg = 0;
+  double dynamic_m = 0;  ///< of dynamic points, in the axes of the camera that sees them
+  bool has_converged = true;
+};
+
+struct AblationOptions {
+  int max_iterations = 200;  ///< of each solve: enough to converge
+  double function_tolerance = 1e-10;
+  double rigidity_sigma_m = 0.01;
+};
+
+/// Bundle adjustment over a whole simulated sequence, all rows from the same start values.
+class Ablation {
+ public:
+  Ablation(const AblationOptions& options, const SimulatedSequence& sequence);
+
+  AblationErrors Run(AblationRow row) const;
+  /// The problem with start values: first frame fixed, poses from odometry, points as measured.
+  BundleProblem MakeProblem(bool with_objects) const;
+
+  BundleOptions MakeBundleOptions(AblationRow row) const;
+  AblationErrors Evaluate(const BundleProblem& problem) const;
+
+  BundleProblem Solve(AblationRow row, bool* has_converged) const;
+
+ private:
+  AblationOptions options_;
+  const SimulatedSequence& sequence_;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_TOOLS_ABLATION_H_
