@@ -22,6 +22,7 @@ struct BundleOptions {
   // Huber kernels, in standard deviations of the residual's norm.
   double huber_static = 2.5;
   double huber_dynamic = 2.0;
+  double huber_smoothness = 0;  ///< on changes of a person's velocity; 0: none
 
   // Factor elimination: a factor whose whitened error is larger is dropped before the second pass.
   double eliminate_static = 4.0;

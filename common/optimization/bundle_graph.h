@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <type_traits>
 #include <vector>
@@ -74,7 +75,12 @@ class BundleGraph {
   std::vector<Sighting> Sightings(BundleProblem::Human* human) const;
   void AddRigidity(const std::vector<Sighting>& sightings, BundleProblem::Human* human);
   void AddVelocities(const std::vector<Sighting>& sightings, BundleProblem::Human* human);
-  void AddPartMotions(const Sighting& before, const Sighting& after, BundleProblem::Human* human);
+  /// The motion of each part from one frame to the next, null where there is none.
+  using PartBlocks = std::vector<double*>;
+  PartBlocks AddPartMotions(const Sighting& before, const Sighting& after,
+                            BundleProblem::Human* human);
+  void AddSe3Motions(bool is_smooth, const std::vector<Sighting>& sightings,
+                     BundleProblem::Human* human);
   void AddTrackMotions(const std::vector<Sighting>& sightings, BundleProblem::Human* human);
   MotionNoise NoiseOf(const BundleProblem::Human& human) const;
   void AddRotationDamping(const std::vector<const JointState*>& points, double* motion);
@@ -94,6 +100,7 @@ class BundleGraph {
   PoseManifold manifold_;
   ceres::HuberLoss static_loss_;
   ceres::HuberLoss dynamic_loss_;
+  std::unique_ptr<ceres::LossFunction> smoothness_loss_;  // or null
   std::vector<PoseBlock> poses_;
   std::deque<PoseBlock> motions_;  // addresses stay
   std::deque<Eigen::Vector3d> velocities_;

@@ -1,6 +1,7 @@
 #include <Eigen/Core>
 #include <Eigen/SVD>
 #include <cmath>
+#include <utility>
 
 #include "common/optimization/bundle_graph.h"
 #include "common/optimization/human_factors.h"
@@ -76,18 +77,18 @@ void BundleGraph::AddHuman(BundleProblem::Human* human) {
   if (options_.use_rigidity) AddRigidity(sightings, human);
   if (!options_.use_motion) return;
   const MotionForm form = human->motion_form.value_or(options_.motion_form);
-  if (form == MotionForm::kSe3Track) {
-    AddTrackMotions(sightings, human);
-    return;
-  }
-  if (form != MotionForm::kSe3Parts) {
-    AddVelocities(sightings, human);
-    return;
-  }
-  for (std::size_t i = 1; i < sightings.size(); ++i) {
-    if (StepBetween(sightings[i - 1], sightings[i]) > 0) {
-      AddPartMotions(sightings[i - 1], sightings[i], human);
-    }
+  switch (form) {
+    case MotionForm::kVelocity:
+    case MotionForm::kVelocityTrack:
+      AddVelocities(sightings, human);
+      break;
+    case MotionForm::kSe3Parts:
+    case MotionForm::kSe3Smooth:
+      AddSe3Motions(form == MotionForm::kSe3Smooth, sightings, human);
+      break;
+    case MotionForm::kSe3Track:
+      AddTrackMotions(sightings, human);
+      break;
   }
 }
 
@@ -167,8 +168,8 @@ void BundleGraph::AddVelocities(const std::vector<Sighting>& sightings,
       people_blocks_.push_back(velocity);
       if (velocity_before != nullptr) {
         const double sigma_m_s = noise.acceleration_m_s2 * 0.5 * (step_s + step_before_s);
-        ceres_problem_.AddResidualBlock(new VelocitySmoothnessFactor(sigma_m_s), nullptr,
-                                        velocity_before, velocity);
+        ceres_problem_.AddResidualBlock(new VelocitySmoothnessFactor(sigma_m_s),
+                                        smoothness_loss_.get(), velocity_before, velocity);
       }
     }
     for (const auto& [before, after] : pairs) {
@@ -182,8 +183,31 @@ void BundleGraph::AddVelocities(const std::vector<Sighting>& sightings,
   }
 }
 
-void BundleGraph::AddPartMotions(const Sighting& before, const Sighting& after,
-                                 BundleProblem::Human* human) {
+void BundleGraph::AddSe3Motions(bool is_smooth, const std::vector<Sighting>& sightings,
+                                BundleProblem::Human* human) {
+  const MotionNoise noise = NoiseOf(*human);
+  PartBlocks blocks_before(human->model->parts.size(), nullptr);
+  double step_before_s = 0;
+  for (std::size_t i = 1; i < sightings.size(); ++i) {
+    const double step_s = StepBetween(sightings[i - 1], sightings[i]);
+    PartBlocks blocks(human->model->parts.size(), nullptr);
+    if (step_s > 0) blocks = AddPartMotions(sightings[i - 1], sightings[i], human);
+    for (std::size_t part = 0; is_smooth && part < blocks.size(); ++part) {
+      if (blocks[part] == nullptr || blocks_before[part] == nullptr) continue;
+      const double mean_step_s = 0.5 * (step_s + step_before_s);
+      ceres_problem_.AddResidualBlock(
+          new PartSmoothnessFactor(step_before_s, step_s, noise.acceleration_m_s2 * mean_step_s,
+                                   noise.angular_acceleration_rad_s2 * mean_step_s),
+          smoothness_loss_.get(), blocks_before[part], blocks[part]);
+    }
+    blocks_before = std::move(blocks);
+    step_before_s = step_s;
+  }
+}
+
+BundleGraph::PartBlocks BundleGraph::AddPartMotions(const Sighting& before, const Sighting& after,
+                                                    BundleProblem::Human* human) {
+  PartBlocks blocks(human->model->parts.size(), nullptr);
   const double sigma_m = NoiseOf(*human).motion_sigma_m;
   for (int part = 0; part < static_cast<int>(human->model->parts.size()); ++part) {
     const std::vector<Pair> pairs =
@@ -192,6 +216,7 @@ void BundleGraph::AddPartMotions(const Sighting& before, const Sighting& after,
     const Eigen::Vector3d centroid_W = Centroid(pairs);
     motions_.push_back(ToPoseBlock({Eigen::Quaterniond::Identity(), MeanStep(pairs)}));
     double* motion = motions_.back().data();
+    blocks[static_cast<std::size_t>(part)] = motion;
     people_blocks_.push_back(motion);
     ceres_problem_.AddParameterBlock(motion, kPoseBlockSize, &manifold_);
     std::vector<const JointState*> points;
@@ -203,6 +228,7 @@ void BundleGraph::AddPartMotions(const Sighting& before, const Sighting& after,
     AddRotationDamping(points, motion);
     found_motions_.push_back({human, after.frame, part, centroid_W, motion, nullptr, 0});
   }
+  return blocks;
 }
 
 /// One motion per part for the whole track, about the centroid of the part where it was first seen
@@ -245,7 +271,7 @@ void BundleGraph::AddTrackMotions(const std::vector<Sighting>& sightings,
 
 MotionNoise BundleGraph::NoiseOf(const BundleProblem::Human& human) const {
   return human.motion_noise.value_or(
-      MotionNoise{options_.motion_sigma_m, options_.person_acceleration_m_s2});
+      MotionNoise{options_.motion_sigma_m, options_.person_acceleration_m_s2, 1.0});
 }
 
 /// Two points leave the rotation about the line through them free; three or more may still lie

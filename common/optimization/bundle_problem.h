@@ -21,12 +21,14 @@ enum class MotionForm {
   kVelocityTrack,  ///< torso and head share one velocity over the whole window
   kSe3Parts,       ///< the paper's: one rigid motion per rigid part and frame pair
   kSe3Track,       ///< for rigid objects: one rigid motion per part over the whole track
+  kSe3Smooth,      ///< for rigid objects: one per part and frame pair, smoothed over time
 };
 
 /// How far a track's points stray from its motion model: one standard deviation, per axis.
 struct MotionNoise {
   double motion_sigma_m = 0.05;    ///< of a point against the body's motion, per frame pair
-  double acceleration_m_s2 = 2.0;  ///< of the change of velocity (kVelocity)
+  double acceleration_m_s2 = 2.0;  ///< of the change of velocity (kVelocity, kSe3Smooth)
+  double angular_acceleration_rad_s2 = 1.0;  ///< likewise (kSe3Smooth)
 };
 
 /// How much a carrier may accelerate: one standard deviation, per axis.

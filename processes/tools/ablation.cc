@@ -122,7 +122,7 @@ BundleProblem Ablation::MakeProblem(bool with_objects) const {
     human.model = ModelOf(sequence_.objects[i]);
     human.segment_length_m.assign(human.model->segments.size(), std::nullopt);
     human.known_length_m.assign(human.model->segments.size(), std::nullopt);
-    if (!sequence_.objects[i].is_person) human.motion_form = MotionForm::kSe3Track;
+    if (!sequence_.objects[i].is_person) human.motion_form = MotionForm::kSe3Smooth;
   }
   return problem;
 }
@@ -137,21 +137,49 @@ BundleOptions Ablation::MakeBundleOptions(AblationRow row) const {
   bundle.max_iterations_after_elimination = 0;
   bundle.function_tolerance = options_.function_tolerance;
   bundle.rigidity_sigma_m = options_.rigidity_sigma_m;
+  bundle.huber_smoothness = options_.huber_smoothness;
   return bundle;
 }
 
+void Ablation::LearnNoise(BundleProblem* problem) const {
+  for (BundleProblem::Human& human : problem->humans) {
+    if (!human.joints.empty()) {
+      human.motion_noise = EstimateMotionNoise(options_.noise, *problem, human);
+    }
+  }
+}
+
 BundleProblem Ablation::Solve(AblationRow row, bool* has_converged) const {
-  BundleOptions bundle = MakeBundleOptions(row);
+  const BundleOptions bundle = MakeBundleOptions(row);
   BundleProblem problem = MakeProblem(true);
   *has_converged = true;
   if (row == AblationRow::kBefore) return problem;
-  if (bundle.use_people) {  // tight factors start from a solution without them
-    BundleOptions loose = bundle;
-    loose.use_motion = loose.use_rigidity = false;
-    SolveBundle(loose, &problem);
-    for (BundleProblem::Human& human : problem.humans) StartLengths(&human);
+  // Tight factors start from a solution without them, and are drawn tight step by step.
+  BundleOptions loose = bundle;
+  loose.use_motion = loose.use_rigidity = false;
+  BundleSummary summary = SolveBundle(loose, &problem);
+  if (bundle.use_motion) {
+    loose.use_motion = true;
+    loose.function_tolerance = 1e-6;
+    for (BundleProblem::Human& human : problem.humans) human.motion_noise = options_.noise.prior;
+    for (int pass = 0; pass < options_.num_noise_passes; ++pass) {
+      SolveBundle(loose, &problem);
+      LearnNoise(&problem);
+    }
+    loose.function_tolerance = bundle.function_tolerance;
+    summary = SolveBundle(loose, &problem);
   }
-  *has_converged = SolveBundle(bundle, &problem).has_converged;
+  if (bundle.use_rigidity) {
+    for (BundleProblem::Human& human : problem.humans) StartLengths(&human);
+    loose.use_rigidity = true;
+    loose.function_tolerance = 1e-4;
+    for (const double factor : {30.0, 10.0, 3.0}) {
+      loose.rigidity_sigma_m = factor * bundle.rigidity_sigma_m;
+      SolveBundle(loose, &problem);
+    }
+    summary = SolveBundle(bundle, &problem);
+  }
+  *has_converged = summary.has_converged;
   return problem;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/optimization/bundle_adjuster.h"
+#include "common/optimization/track_noise.h"
 #include "common/simulation/feature_simulator.h"
 
 namespace airdos {
@@ -26,9 +27,12 @@ struct AblationErrors {
 };
 
 struct AblationOptions {
-  int max_iterations = 200;  ///< of each solve: enough to converge
+  int max_iterations = 1000;  ///< of each solve: enough to converge
   double function_tolerance = 1e-10;
   double rigidity_sigma_m = 0.01;
+  double huber_smoothness = 0;
+  TrackNoiseOptions noise;   ///< how the motion of each object is weighed
+  int num_noise_passes = 2;  ///< adjustments from which the noise is learnt before the last one
 };
 
 /// Bundle adjustment over a whole simulated sequence, all rows from the same start values.
@@ -46,6 +50,7 @@ class Ablation {
   BundleProblem Solve(AblationRow row, bool* has_converged) const;
 
  private:
+  void LearnNoise(BundleProblem* problem) const;
   AblationOptions options_;
   const SimulatedSequence& sequence_;
 };
