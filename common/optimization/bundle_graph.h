@@ -86,7 +86,8 @@ class BundleGraph {
   void AddRotationDamping(const std::vector<const JointState*>& points, double* motion);
   void AddMotionFactor(ceres::CostFunction* cost, JointState* before, JointState* after,
                        double* motion, BundleProblem::Human* human);
-  double StepBetween(const Sighting& before, const Sighting& after) const;
+  double StepBetween(const Sighting& before, const Sighting& after,
+                     const BundleProblem::Human& human) const;
   template <class Observation>
   void AddReprojection(Observation* observation, bool has_right, double* p_W, Kind kind);
   double Threshold(Kind kind) const;

@@ -106,7 +106,9 @@ std::vector<BundleGraph::Sighting> BundleGraph::Sightings(BundleProblem::Human* 
 
 /// Time in s from one sighting to the next; zero where a motion factor between them would say
 /// nothing.
-double BundleGraph::StepBetween(const Sighting& before, const Sighting& after) const {
+double BundleGraph::StepBetween(const Sighting& before, const Sighting& after,
+                                const BundleProblem::Human& human) const {
+  if (human.track_breaks.count(after.frame) > 0) return 0;
   const double step_s = problem_->frames[static_cast<std::size_t>(after.frame)].time_s -
                         problem_->frames[static_cast<std::size_t>(before.frame)].time_s;
   return step_s > 0 && step_s <= options_.motion_max_gap_s ? step_s : 0;
@@ -154,11 +156,12 @@ void BundleGraph::AddVelocities(const std::vector<Sighting>& sightings,
   double* velocity_before = nullptr;  // of the pair just before this one
   double step_before_s = 0;
   for (std::size_t i = 1; i < sightings.size(); ++i) {
-    const double step_s = StepBetween(sightings[i - 1], sightings[i]);
+    const double step_s = StepBetween(sightings[i - 1], sightings[i], *human);
     const std::vector<Pair> pairs =
         SharedJoints(human->model->body_points, sightings[i - 1], sightings[i]);
     if (step_s == 0 || pairs.empty()) {
-      if (!is_whole_track) velocity_before = nullptr;
+      const bool is_break = human->track_breaks.count(sightings[i].frame) > 0;
+      if (!is_whole_track || is_break) velocity_before = nullptr;
       continue;
     }
     double* velocity = velocity_before;
@@ -189,7 +192,7 @@ void BundleGraph::AddSe3Motions(bool is_smooth, const std::vector<Sighting>& sig
   PartBlocks blocks_before(human->model->parts.size(), nullptr);
   double step_before_s = 0;
   for (std::size_t i = 1; i < sightings.size(); ++i) {
-    const double step_s = StepBetween(sightings[i - 1], sightings[i]);
+    const double step_s = StepBetween(sightings[i - 1], sightings[i], *human);
     PartBlocks blocks(human->model->parts.size(), nullptr);
     if (step_s > 0) blocks = AddPartMotions(sightings[i - 1], sightings[i], human);
     for (std::size_t part = 0; is_smooth && part < blocks.size(); ++part) {
@@ -242,9 +245,10 @@ void BundleGraph::AddTrackMotions(const std::vector<Sighting>& sightings,
     double unit_s = 0;
     Eigen::Vector3d centroid_W;
     for (std::size_t i = 1; i < sightings.size(); ++i) {
-      const double step_s = StepBetween(sightings[i - 1], sightings[i]);
+      const double step_s = StepBetween(sightings[i - 1], sightings[i], *human);
       const std::vector<Pair> pairs = SharedJoints(
           human->model->parts[static_cast<std::size_t>(part)], sightings[i - 1], sightings[i]);
+      if (human->track_breaks.count(sightings[i].frame) > 0) motion = nullptr;
       if (step_s == 0 || pairs.empty()) continue;
       if (motion == nullptr) {
         if (pairs.size() < 2) continue;  // one point has no rotation

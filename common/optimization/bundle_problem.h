@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "common/geometry/se3.h"
@@ -107,6 +108,9 @@ struct BundleProblem {
     std::shared_ptr<const ArticulatedModel> model = CocoBodyModel();
     std::optional<MotionForm> motion_form;    ///< else as the options say
     std::optional<MotionNoise> motion_noise;  ///< likewise
+    /// Frames at which the track became somebody else's: no motion leads there from the sighting
+    /// before, and the velocity may be another.
+    std::set<int> track_breaks;
     /// Start values of kSe3Track, at most one per part; `frame` is not looked at. Where none is
     /// given the points give one.
     std::vector<PartMotion> start_motions;

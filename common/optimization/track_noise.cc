@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 namespace airdos {
@@ -20,6 +21,7 @@ struct MeasuredPoint {
 
 /// The body points that one frame shows.
 struct Sighting {
+  int frame = 0;
   double time_s = 0;
   std::map<int, MeasuredPoint> points;
 };
@@ -49,6 +51,7 @@ std::vector<Sighting> BodySightings(const BundleProblem& problem,
     const auto point = Measured(problem, joint);
     if (!point) continue;
     Sighting& sighting = by_frame[joint.frame];
+    sighting.frame = joint.frame;
     sighting.time_s = problem.frames[static_cast<std::size_t>(joint.frame)].time_s;
     sighting.points.emplace(joint.joint, *point);
   }
@@ -102,9 +105,11 @@ struct Scatter {
   std::vector<double> shares;                // of a point's own variance that the mean leaves
 };
 
-Scatter ScatterAboutBody(const std::vector<Sighting>& sightings, bool turns) {
+Scatter ScatterAboutBody(const std::vector<Sighting>& sightings, const std::set<int>& breaks,
+                         bool turns) {
   Scatter scatter;
   for (std::size_t i = 1; i < sightings.size(); ++i) {
+    if (breaks.count(sightings[i].frame) > 0) continue;
     std::vector<Eigen::Vector3d> before, after;
     std::vector<Eigen::Matrix3d> covariances;
     Eigen::Vector3d mean_before = Eigen::Vector3d::Zero(), mean_after = Eigen::Vector3d::Zero();
@@ -134,6 +139,7 @@ Scatter ScatterAboutBody(const std::vector<Sighting>& sightings, bool turns) {
 /// The body's centre at each sighting, as if always the same points were seen: each point stands
 /// for the centre at its mean offset from it.
 struct Centre {
+  int frame = 0;
   double time_s = 0;
   Eigen::Vector3d p_W;
   Eigen::Matrix3d covariance_W;
@@ -163,43 +169,68 @@ std::vector<Centre> Centres(const std::vector<Sighting>& sightings, double camer
       weighted += weight * (point.p_W - offsets.at(index));
     }
     const Eigen::Matrix3d covariance = information.inverse();
-    centres.push_back({sighting.time_s, covariance * weighted,
+    centres.push_back({sighting.frame, sighting.time_s, covariance * weighted,
                        covariance + camera_sigma_m * camera_sigma_m * Eigen::Matrix3d::Identity()});
   }
   return centres;
 }
 
-/// Of a filter with constant velocity whose velocity changes by sigma_m_s2 * h per step of h, while
-/// the centre strays by `step_sigma_m`.
-double CentreLogLikelihood(const std::vector<Centre>& centres, double max_gap_s,
-                           double step_sigma_m, double sigma_m_s2, double largest_chi2) {
-  constexpr double kStartSigma_m_s = 2;
-  double sum = 0;
-  Vector6d x;  // position, velocity
-  Matrix6d P;
-  for (std::size_t i = 0; i < centres.size(); ++i) {
-    const double step_s = i > 0 ? centres[i].time_s - centres[i - 1].time_s : 0;
-    if (i == 0 || step_s > max_gap_s) {
-      x << centres[i].p_W, Eigen::Vector3d::Zero();
-      P.setZero();
-      P.topLeftCorner<3, 3>() = centres[i].covariance_W;
-      P.bottomRightCorner<3, 3>().diagonal().setConstant(kStartSigma_m_s * kStartSigma_m_s);
-      continue;
-    }
+/// A filter of constant velocity on a body's centre.
+class CentreFilter {
+ public:
+  void Start(const Centre& centre) {
+    constexpr double kStartSigma_m_s = 2;
+    x_ << centre.p_W, Eigen::Vector3d::Zero();
+    P_.setZero();
+    P_.topLeftCorner<3, 3>() = centre.covariance_W;
+    P_.bottomRightCorner<3, 3>().diagonal().setConstant(kStartSigma_m_s * kStartSigma_m_s);
+  }
+
+  /// While the velocity changes by sigma_m_s2 * step_s and the centre strays by step_sigma_m.
+  void Predict(double step_s, double sigma_m_s2, double step_sigma_m) {
     Matrix6d F = Matrix6d::Identity();
     F.topRightCorner<3, 3>().diagonal().setConstant(step_s);
-    Matrix6d Q = Matrix6d::Zero();
-    Q.bottomRightCorner<3, 3>().diagonal().setConstant(sigma_m_s2 * sigma_m_s2 * step_s * step_s);
-    Q.topLeftCorner<3, 3>().diagonal().setConstant(step_sigma_m * step_sigma_m);
-    x = F * x;
-    P = F * (P + Q) * F.transpose();
-    const Eigen::Matrix3d S = P.topLeftCorner<3, 3>() + centres[i].covariance_W;
-    const Eigen::Vector3d innovation = centres[i].p_W - x.head<3>();
-    sum += LogDensity(innovation, S, largest_chi2);
-    const Eigen::Matrix<double, 6, 3> gain = P.leftCols<3>() * S.inverse();
-    x += gain * innovation;
-    P -= gain * P.topRows<3>();
-    P = 0.5 * (P + P.transpose()).eval();
+    const double sigma_m_s = sigma_m_s2 * step_s;
+    P_.bottomRightCorner<3, 3>().diagonal().array() += sigma_m_s * sigma_m_s;
+    x_ = F * x_;
+    P_ = F * P_ * F.transpose();
+    P_.topLeftCorner<3, 3>().diagonal().array() += step_sigma_m * step_sigma_m;
+  }
+
+  Eigen::Vector3d Innovation(const Centre& centre) const { return centre.p_W - x_.head<3>(); }
+  Eigen::Matrix3d InnovationCovariance(const Centre& centre) const {
+    return P_.topLeftCorner<3, 3>() + centre.covariance_W;
+  }
+
+  void Update(const Centre& centre) {
+    const Eigen::Matrix<double, 6, 3> gain =
+        P_.leftCols<3>() * InnovationCovariance(centre).inverse();
+    x_ += gain * Innovation(centre);
+    P_ -= (gain * P_.topRows<3>()).eval();
+    P_ = 0.5 * (P_ + P_.transpose()).eval();
+  }
+
+ private:
+  Vector6d x_ = Vector6d::Zero();  // position, velocity
+  Matrix6d P_ = Matrix6d::Zero();
+};
+
+constexpr double kMaxGap_s = 0.5;
+
+double CentreLogLikelihood(const std::vector<Centre>& centres, const std::set<int>& breaks,
+                           double step_sigma_m, double sigma_m_s2, double largest_chi2) {
+  double sum = 0;
+  CentreFilter filter;
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    const double step_s = i > 0 ? centres[i].time_s - centres[i - 1].time_s : 0;
+    if (i == 0 || step_s > kMaxGap_s || breaks.count(centres[i].frame) > 0) {
+      filter.Start(centres[i]);
+      continue;
+    }
+    filter.Predict(step_s, sigma_m_s2, step_sigma_m);
+    sum += LogDensity(filter.Innovation(centres[i]), filter.InnovationCovariance(centres[i]),
+                      largest_chi2);
+    filter.Update(centres[i]);
   }
   return sum;
 }
@@ -208,11 +239,10 @@ double CentreLogLikelihood(const std::vector<Centre>& centres, double max_gap_s,
 
 MotionNoise EstimateMotionNoise(const TrackNoiseOptions& options, const BundleProblem& problem,
                                 const BundleProblem::Human& human) {
-  constexpr double kMaxGap_s = 0.5;
   const std::vector<Sighting> sightings = BodySightings(problem, human);
   const bool turns = human.motion_form && *human.motion_form != MotionForm::kVelocity &&
                      *human.motion_form != MotionForm::kVelocityTrack;
-  const Scatter scatter = ScatterAboutBody(sightings, turns);
+  const Scatter scatter = ScatterAboutBody(sightings, human.track_breaks, turns);
   const std::vector<Centre> centres = Centres(sightings, options.camera_sigma_m);
   MotionNoise noise = options.prior;
   noise.motion_sigma_m = PosteriorMean(
@@ -233,10 +263,33 @@ MotionNoise EstimateMotionNoise(const TrackNoiseOptions& options, const BundlePr
   noise.acceleration_m_s2 = PosteriorMean(
       options.prior.acceleration_m_s2, options.prior_log_sigma, options.least.acceleration_m_s2,
       options.largest.acceleration_m_s2, [&](double sigma_m_s2) {
-        return CentreLogLikelihood(centres, kMaxGap_s, step_sigma_m, sigma_m_s2,
+        return CentreLogLikelihood(centres, human.track_breaks, step_sigma_m, sigma_m_s2,
                                    options.largest_chi2);
       });
   return noise;
+}
+
+std::set<int> FindTrackBreaks(const TrackBreakOptions& options, const BundleProblem& problem,
+                              const BundleProblem::Human& human) {
+  std::set<int> breaks;
+  const std::vector<Centre> centres =
+      Centres(BodySightings(problem, human), options.camera_sigma_m);
+  CentreFilter filter;
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    const double step_s = i > 0 ? centres[i].time_s - centres[i - 1].time_s : 0;
+    if (i > 0 && step_s <= kMaxGap_s) {
+      filter.Predict(step_s, options.acceleration_m_s2, 0);
+      const Eigen::Vector3d innovation = filter.Innovation(centres[i]);
+      const Eigen::Matrix3d S = filter.InnovationCovariance(centres[i]);
+      if (innovation.dot(S.ldlt().solve(innovation)) <= options.largest_chi2) {
+        filter.Update(centres[i]);
+        continue;
+      }
+      breaks.insert(centres[i].frame);
+    }
+    filter.Start(centres[i]);
+  }
+  return breaks;
 }
 
 }  // namespace airdos

@@ -1,6 +1,8 @@
 #ifndef AIRDOS_COMMON_OPTIMIZATION_TRACK_NOISE_H_
 #define AIRDOS_COMMON_OPTIMIZATION_TRACK_NOISE_H_
 
+#include <set>
+
 #include "common/optimization/bundle_problem.h"
 
 namespace airdos {
@@ -31,6 +33,18 @@ struct TrackNoiseOptions {
 /// call it after an adjustment. A person too short to say anything gets the prior.
 MotionNoise EstimateMotionNoise(const TrackNoiseOptions& options, const BundleProblem& problem,
                                 const BundleProblem::Human& human);
+
+struct TrackBreakOptions {
+  double acceleration_m_s2 = 6;  ///< that nobody exceeds for long: sigma of the filter
+  double camera_sigma_m = 0.1;   ///< of the poses from frame to frame, at the person
+  double largest_chi2 = 30;      ///< of the centre's innovation, 3 degrees of freedom
+};
+
+/// The frames at which a track jumps further than any person can: there two people were mistaken
+/// for each other. From the points as measured and the poses in `problem`, which may be start
+/// values. The filter starts anew at each such frame. Gaps do not count; they say nothing.
+std::set<int> FindTrackBreaks(const TrackBreakOptions& options, const BundleProblem& problem,
+                              const BundleProblem::Human& human);
 
 }  // namespace airdos
 

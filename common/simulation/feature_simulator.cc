@@ -145,10 +145,16 @@ void Simulator::ScatterLandmarks() {
 MovingObject Simulator::TryObject(const ObjectGroup& group) {
   const Se3& T_W_C = sequence_.frames[sequence_.frames.size() / 2].T_W_C;
   const double z = random_.Uniform(options_.object_nearest_m, options_.object_farthest_m);
-  const double half_width = 0.5 * options_.camera.width / options_.camera.fx_px;
-  const double is_panning = options_.path.max_pan_deg > 0 ? 1 : 0;
-  const double spread = 0.8 * half_width + 1.0 * is_panning;
-  Eigen::Vector3d middle_W = T_W_C * Eigen::Vector3d(random_.Uniform(-spread, spread) * z, 0, z);
+  Eigen::Vector3d middle_W;
+  if (options_.path.max_pan_deg > 0) {  // all around what the camera pans over
+    const double limit_rad = kRadPerDeg * options_.path.pan_limit_deg;
+    const double bearing_rad = random_.Uniform(-limit_rad, limit_rad);
+    middle_W =
+        T_W_C.translation + z * Eigen::Vector3d(std::sin(bearing_rad), 0, std::cos(bearing_rad));
+  } else {
+    const double spread = 0.4 * options_.camera.width / options_.camera.fx_px;
+    middle_W = T_W_C * Eigen::Vector3d(random_.Uniform(-spread, spread) * z, 0, z);
+  }
   middle_W.y() = kCameraHeight_m - (group.is_person ? kHipHeight_m : kBoxHeight_m);
   RootMotion motion;
   motion.behaviour = group.behaviour;

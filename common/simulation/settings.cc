@@ -47,7 +47,7 @@ SimulationOptions MakeWalkers(int static_per_frame, Behaviour behaviour, int num
                      {true, behaviour, num_behaving, 14}};
   options.object_nearest_m = 3;
   options.object_farthest_m = 8;
-  options.min_seen_share = 0.4;
+  options.min_seen_share = 0.25;
   options.has_point_noise = false;
   options.odometry_sigma_m = 0.05;
   options.odometry_sigma_deg = 0.5;

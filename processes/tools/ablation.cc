@@ -143,33 +143,54 @@ BundleOptions Ablation::MakeBundleOptions(AblationRow row) const {
 
 void Ablation::LearnNoise(BundleProblem* problem) const {
   for (BundleProblem::Human& human : problem->humans) {
-    if (!human.joints.empty()) {
-      human.motion_noise = EstimateMotionNoise(options_.noise, *problem, human);
+    human.motion_noise = EstimateMotionNoise(options_.noise, *problem, human);
+  }
+}
+
+BundleProblem Ablation::SolveWithPriorNoise(const BundleOptions& bundle) const {
+  BundleOptions without_people = bundle;
+  without_people.use_people = false;
+  BundleProblem from_odometry = MakeProblem(true);
+  for (BundleProblem::Human& human : from_odometry.humans) {
+    human.track_breaks = FindTrackBreaks({}, from_odometry, human);
+    human.motion_noise = options_.noise.prior;
+  }
+  BundleProblem from_static = from_odometry;
+  SolveBundle(without_people, &from_static);
+  for (std::size_t i = 0; i < from_static.humans.size(); ++i) {
+    for (BundleProblem::JointState& joint : from_static.humans[i].joints) {
+      const auto k = static_cast<std::size_t>(joint.frame);
+      joint.p_W =
+          from_static.frames[k].T_W_C * (from_odometry.frames[k].T_W_C.inverse() * joint.p_W);
     }
   }
+  const double cost_from_odometry = SolveBundle(bundle, &from_odometry).final_cost;
+  const double cost_from_static = SolveBundle(bundle, &from_static).final_cost;
+  return cost_from_static < cost_from_odometry ? from_static : from_odometry;
 }
 
 BundleProblem Ablation::Solve(AblationRow row, bool* has_converged) const {
   const BundleOptions bundle = MakeBundleOptions(row);
-  BundleProblem problem = MakeProblem(true);
   *has_converged = true;
-  if (row == AblationRow::kBefore) return problem;
-  // Tight factors start from a solution without them, and are drawn tight step by step.
+  if (row == AblationRow::kBefore) return MakeProblem(true);
   BundleOptions loose = bundle;
-  loose.use_motion = loose.use_rigidity = false;
-  BundleSummary summary = SolveBundle(loose, &problem);
+  loose.use_rigidity = false;
+  BundleProblem problem;
+  BundleSummary summary;
   if (bundle.use_motion) {
-    loose.use_motion = true;
     loose.function_tolerance = 1e-6;
-    for (BundleProblem::Human& human : problem.humans) human.motion_noise = options_.noise.prior;
+    problem = SolveWithPriorNoise(loose);
     for (int pass = 0; pass < options_.num_noise_passes; ++pass) {
-      SolveBundle(loose, &problem);
+      if (pass > 0) SolveBundle(loose, &problem);
       LearnNoise(&problem);
     }
     loose.function_tolerance = bundle.function_tolerance;
-    summary = SolveBundle(loose, &problem);
+  } else {
+    problem = MakeProblem(true);
   }
+  summary = SolveBundle(loose, &problem);
   if (bundle.use_rigidity) {
+    // Tight factors start from a solution without them, and are drawn tight step by step.
     for (BundleProblem::Human& human : problem.humans) StartLengths(&human);
     loose.use_rigidity = true;
     loose.function_tolerance = 1e-4;

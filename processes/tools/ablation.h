@@ -51,6 +51,8 @@ class Ablation {
 
  private:
   void LearnNoise(BundleProblem* problem) const;
+  /// From the odometry, and from the solution without people: the one with the lower cost.
+  BundleProblem SolveWithPriorNoise(const BundleOptions& bundle) const;
   AblationOptions options_;
   const SimulatedSequence& sequence_;
 };
