@@ -145,29 +145,41 @@ struct Centre {
   Eigen::Matrix3d covariance_W;
 };
 
-std::vector<Centre> Centres(const std::vector<Sighting>& sightings, double camera_sigma_m) {
-  std::map<int, Eigen::Vector3d> offsets;
+/// Where each point lies from the centre of the body, in the mean over the sightings that show
+/// most.
+std::map<int, Eigen::Vector3d> Offsets(const std::vector<Sighting>& sightings) {
+  std::size_t most = 0;
+  for (const Sighting& sighting : sightings) most = std::max(most, sighting.points.size());
+  std::map<int, Eigen::Vector3d> sums;
   std::map<int, int> counts;
   for (const Sighting& sighting : sightings) {
+    if (sighting.points.size() < most) continue;  // the middle of a part is another point
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const auto& [index, point] : sighting.points) mean += point.p_W;
-    mean /= static_cast<double>(sighting.points.size());
+    mean /= static_cast<double>(most);
     for (const auto& [index, point] : sighting.points) {
-      const auto [it, is_new] = offsets.emplace(index, Eigen::Vector3d::Zero());
-      it->second += point.p_W - mean;
+      sums.emplace(index, Eigen::Vector3d::Zero()).first->second += point.p_W - mean;
       ++counts[index];
     }
   }
-  for (auto& [index, offset] : offsets) offset /= counts[index];
+  for (auto& [index, offset] : sums) offset /= counts[index];
+  return sums;
+}
+
+std::vector<Centre> Centres(const std::vector<Sighting>& sightings, double camera_sigma_m) {
+  const std::map<int, Eigen::Vector3d> offsets = Offsets(sightings);
   std::vector<Centre> centres;
   for (const Sighting& sighting : sightings) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
     for (const auto& [index, point] : sighting.points) {
+      const auto offset = offsets.find(index);
+      if (offset == offsets.end()) continue;
       const Eigen::Matrix3d weight = point.covariance_W.inverse();
       information += weight;
-      weighted += weight * (point.p_W - offsets.at(index));
+      weighted += weight * (point.p_W - offset->second);
     }
+    if (information.isZero()) continue;
     const Eigen::Matrix3d covariance = information.inverse();
     centres.push_back({sighting.frame, sighting.time_s, covariance * weighted,
                        covariance + camera_sigma_m * camera_sigma_m * Eigen::Matrix3d::Identity()});
@@ -216,6 +228,7 @@ class CentreFilter {
 };
 
 constexpr double kMaxGap_s = 0.5;
+constexpr double kGap = 1.5;  // usual steps: longer ones are gaps
 
 double CentreLogLikelihood(const std::vector<Centre>& centres, const std::set<int>& breaks,
                            double step_sigma_m, double sigma_m_s2, double largest_chi2) {
@@ -275,19 +288,29 @@ std::set<int> FindTrackBreaks(const TrackBreakOptions& options, const BundleProb
   const std::vector<Centre> centres =
       Centres(BodySightings(problem, human), options.camera_sigma_m);
   CentreFilter filter;
+  double usual_step_s = kMaxGap_s;
+  for (std::size_t i = 1; i < centres.size(); ++i) {
+    usual_step_s = std::min(usual_step_s, centres[i].time_s - centres[i - 1].time_s);
+  }
+  double step_before_s = 0;
   for (std::size_t i = 0; i < centres.size(); ++i) {
     const double step_s = i > 0 ? centres[i].time_s - centres[i - 1].time_s : 0;
     if (i > 0 && step_s <= kMaxGap_s) {
-      filter.Predict(step_s, options.acceleration_m_s2, 0);
+      // Changes of velocity add up like a random walk over a gap.
+      filter.Predict(step_s, options.acceleration_m_s2 * std::sqrt(usual_step_s / step_s), 0);
       const Eigen::Vector3d innovation = filter.Innovation(centres[i]);
       const Eigen::Matrix3d S = filter.InnovationCovariance(centres[i]);
       if (innovation.dot(S.ldlt().solve(innovation)) <= options.largest_chi2) {
         filter.Update(centres[i]);
+        step_before_s = step_s;
         continue;
       }
       breaks.insert(centres[i].frame);
+      // Just after a gap it may have been there already, with the filter too unsure to see it.
+      if (step_before_s > kGap * usual_step_s) breaks.insert(centres[i - 1].frame);
     }
     filter.Start(centres[i]);
+    step_before_s = 0;
   }
   return breaks;
 }

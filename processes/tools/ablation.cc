@@ -142,7 +142,10 @@ BundleOptions Ablation::MakeBundleOptions(AblationRow row) const {
 }
 
 void Ablation::LearnNoise(BundleProblem* problem) const {
+  TrackBreakOptions breaks;
+  breaks.camera_sigma_m = 0.03;  // adjusted poses are better than those it started from
   for (BundleProblem::Human& human : problem->humans) {
+    human.track_breaks.merge(FindTrackBreaks(breaks, *problem, human));
     human.motion_noise = EstimateMotionNoise(options_.noise, *problem, human);
   }
 }
