@@ -70,6 +70,11 @@ std::map<std::string, SimulationOptions> MakeSettings() {
       settings[name + std::to_string(num)] = MakeWalkers(num, behaviour, 6);
     }
   }
+  for (const int num : {8, 30}) {
+    SimulationOptions erratic = MakeWalkers(num, Behaviour::kCruise, 0);
+    erratic.object_acceleration_m_s2 = 2;
+    settings["erratic" + std::to_string(num)] = erratic;
+  }
   return settings;
 }
 

@@ -44,6 +44,68 @@ void StartLengths(BundleProblem::Human* human) {
   }
 }
 
+std::optional<BundleProblem::PointMeasurement> PointOf(const SimulationOptions& options,
+                                                       const SimulatedMeasurement& seen) {
+  if (!options.has_point_noise) return std::nullopt;
+  return BundleProblem::PointMeasurement{seen.p_C, std::max(options.point_sigma_m, 1e-3)};
+}
+
+double SigmaPx(const SimulationOptions& options) { return std::max(options.pixel_sigma_px, 0.01); }
+
+void AddLandmarks(const SimulatedSequence& sequence, BundleProblem* problem) {
+  std::map<int, int> num_seen;
+  for (const SimulatedFrame& frame : sequence.frames) {
+    for (const SimulatedMeasurement& seen : frame.static_points) ++num_seen[seen.index];
+  }
+  std::map<int, int> index;
+  for (std::size_t k = 0; k < sequence.frames.size(); ++k) {
+    const Se3& T_W_C = sequence.frames[k].T_W_C_odometry;
+    for (const SimulatedMeasurement& seen : sequence.frames[k].static_points) {
+      if (num_seen[seen.index] < 2) continue;  // says nothing
+      const auto [landmark, is_new] =
+          index.emplace(seen.index, static_cast<int>(problem->landmarks.size()));
+      if (is_new) {
+        problem->landmarks.push_back({LandmarkId{seen.index}, T_W_C * seen.p_C, false});
+      }
+      problem->observations.push_back({static_cast<int>(k), landmark->second, seen.uvu_px, true,
+                                       SigmaPx(sequence.options), false,
+                                       PointOf(sequence.options, seen)});
+    }
+  }
+}
+
+void AddObjects(const SimulatedSequence& sequence, BundleProblem* problem) {
+  for (std::size_t i = 0; i < sequence.objects.size(); ++i) {
+    BundleProblem::Human human;
+    human.id.value = static_cast<std::int64_t>(i) + 1;
+    human.model = ModelOf(sequence.objects[i]);
+    human.segment_length_m.assign(human.model->segments.size(), std::nullopt);
+    human.known_length_m.assign(human.model->segments.size(), std::nullopt);
+    if (!sequence.objects[i].is_person) human.motion_form = MotionForm::kSe3Smooth;
+    problem->humans.push_back(std::move(human));
+  }
+  const double variance_px2 = SigmaPx(sequence.options) * SigmaPx(sequence.options);
+  for (std::size_t k = 0; k < sequence.frames.size(); ++k) {
+    const SimulatedFrame& frame = sequence.frames[k];
+    for (const SimulatedMeasurement& seen : frame.object_points) {
+      problem->humans[static_cast<std::size_t>(seen.object)].joints.push_back(
+          {static_cast<int>(k), seen.index, frame.T_W_C_odometry * seen.p_C, seen.uvu_px,
+           variance_px2 * Eigen::Matrix3d::Identity(), false, PointOf(sequence.options, seen)});
+    }
+  }
+}
+
+/// Has the points of objects move along with the camera, from where it is in `from`.
+void CarryObjects(const BundleProblem& from, BundleProblem* problem) {
+  for (BundleProblem::Human& human : problem->humans) {
+    for (BundleProblem::JointState& joint : human.joints) {
+      const auto k = static_cast<std::size_t>(joint.frame);
+      const Se3 T_C_W_before = from.frames[k].T_W_C.inverse();
+      joint.p_W = problem->frames[k].T_W_C * (T_C_W_before * joint.p_W);
+    }
+  }
+}
+
 TrajectoryPose ToTrajectoryPose(double time_s, const Se3& T_W_C) {
   return {time_s, T_W_C.rotation.toRotationMatrix(), T_W_C.translation};
 }
@@ -76,54 +138,16 @@ const std::vector<AblationRow>& AblationRows() {
 Ablation::Ablation(const AblationOptions& options, const SimulatedSequence& sequence)
     : options_(options), sequence_(sequence) {}
 
-BundleProblem Ablation::MakeProblem(bool with_objects) const {
-  const SimulationOptions& simulation = sequence_.options;
+BundleProblem Ablation::MakeProblem() const {
   BundleProblem problem;
-  problem.camera = simulation.camera;
-  std::map<int, int> num_seen;
-  for (const SimulatedFrame& frame : sequence_.frames) {
-    for (const SimulatedMeasurement& seen : frame.static_points) ++num_seen[seen.index];
-  }
-  const auto point_of = [&](const SimulatedMeasurement& seen) {
-    std::optional<BundleProblem::PointMeasurement> point;
-    if (simulation.has_point_noise) {
-      point = BundleProblem::PointMeasurement{seen.p_C, std::max(simulation.point_sigma_m, 1e-3)};
-    }
-    return point;
-  };
-  const double sigma_px = std::max(simulation.pixel_sigma_px, 0.01);
-  std::map<int, int> landmark_index;
-  problem.humans.resize(with_objects ? sequence_.objects.size() : 0);
+  problem.camera = sequence_.options.camera;
   for (std::size_t k = 0; k < sequence_.frames.size(); ++k) {
     const SimulatedFrame& frame = sequence_.frames[k];
-    const int number = static_cast<int>(k);
-    problem.frames.push_back({FrameId{number}, frame.time_s, frame.T_W_C_odometry, k == 0});
-    for (const SimulatedMeasurement& seen : frame.static_points) {
-      if (num_seen[seen.index] < 2) continue;  // says nothing
-      const auto [it, is_new] =
-          landmark_index.emplace(seen.index, static_cast<int>(problem.landmarks.size()));
-      if (is_new) {
-        problem.landmarks.push_back(
-            {LandmarkId{seen.index}, frame.T_W_C_odometry * seen.p_C, false});
-      }
-      problem.observations.push_back(
-          {number, it->second, seen.uvu_px, true, sigma_px, false, point_of(seen)});
-    }
-    if (!with_objects) continue;
-    for (const SimulatedMeasurement& seen : frame.object_points) {
-      problem.humans[static_cast<std::size_t>(seen.object)].joints.push_back(
-          {number, seen.index, frame.T_W_C_odometry * seen.p_C, seen.uvu_px,
-           sigma_px * sigma_px * Eigen::Matrix3d::Identity(), false, point_of(seen)});
-    }
+    problem.frames.push_back({FrameId{static_cast<std::int64_t>(k)}, frame.time_s,
+                              frame.T_W_C_odometry, /*is_fixed=*/k == 0});
   }
-  for (std::size_t i = 0; i < problem.humans.size(); ++i) {
-    BundleProblem::Human& human = problem.humans[i];
-    human.id.value = static_cast<std::int64_t>(i) + 1;
-    human.model = ModelOf(sequence_.objects[i]);
-    human.segment_length_m.assign(human.model->segments.size(), std::nullopt);
-    human.known_length_m.assign(human.model->segments.size(), std::nullopt);
-    if (!sequence_.objects[i].is_person) human.motion_form = MotionForm::kSe3Smooth;
-  }
+  AddLandmarks(sequence_, &problem);
+  AddObjects(sequence_, &problem);
   return problem;
 }
 
@@ -132,12 +156,12 @@ BundleOptions Ablation::MakeBundleOptions(AblationRow row) const {
   bundle.use_people = row >= AblationRow::kWithoutMotion;
   bundle.use_rigidity = row == AblationRow::kWithoutMotion || row == AblationRow::kFull;
   bundle.use_motion = row == AblationRow::kWithoutRigidity || row == AblationRow::kFull;
-  bundle.compute_covariance = false;
+  bundle.compute_covariance = options_.compute_covariance;
   bundle.max_iterations = options_.max_iterations;
   bundle.max_iterations_after_elimination = 0;
   bundle.function_tolerance = options_.function_tolerance;
-  bundle.rigidity_sigma_m = options_.rigidity_sigma_m;
-  bundle.huber_smoothness = options_.huber_smoothness;
+  bundle.rigidity_sigma_m = sequence_.options.has_point_noise ? options_.rigidity_sigma_m
+                                                              : options_.stereo_rigidity_sigma_m;
   return bundle;
 }
 
@@ -151,67 +175,72 @@ void Ablation::LearnNoise(BundleProblem* problem) const {
 }
 
 BundleProblem Ablation::SolveWithPriorNoise(const BundleOptions& bundle) const {
-  BundleOptions without_people = bundle;
-  without_people.use_people = false;
-  BundleProblem from_odometry = MakeProblem(true);
+  BundleProblem from_odometry = MakeProblem();
   for (BundleProblem::Human& human : from_odometry.humans) {
     human.track_breaks = FindTrackBreaks({}, from_odometry, human);
     human.motion_noise = options_.noise.prior;
   }
   BundleProblem from_static = from_odometry;
+  BundleOptions without_people = bundle;
+  without_people.use_people = false;
   SolveBundle(without_people, &from_static);
-  for (std::size_t i = 0; i < from_static.humans.size(); ++i) {
-    for (BundleProblem::JointState& joint : from_static.humans[i].joints) {
-      const auto k = static_cast<std::size_t>(joint.frame);
-      joint.p_W =
-          from_static.frames[k].T_W_C * (from_odometry.frames[k].T_W_C.inverse() * joint.p_W);
-    }
-  }
+  CarryObjects(from_odometry, &from_static);
   const double cost_from_odometry = SolveBundle(bundle, &from_odometry).final_cost;
   const double cost_from_static = SolveBundle(bundle, &from_static).final_cost;
   return cost_from_static < cost_from_odometry ? from_static : from_odometry;
 }
 
-BundleProblem Ablation::Solve(AblationRow row, bool* has_converged) const {
-  const BundleOptions bundle = MakeBundleOptions(row);
-  *has_converged = true;
-  if (row == AblationRow::kBefore) return MakeProblem(true);
+BundleSummary Ablation::SolveMotion(BundleOptions bundle, BundleProblem* problem) const {
+  const double function_tolerance = bundle.function_tolerance;
+  bundle.use_rigidity = false;
+  bundle.compute_covariance = false;
+  bundle.function_tolerance = std::max(function_tolerance, 1e-6);
+  *problem = SolveWithPriorNoise(bundle);
+  for (int pass = 0; pass < options_.num_noise_passes; ++pass) {
+    if (pass > 0) SolveBundle(bundle, problem);
+    LearnNoise(problem);
+  }
+  bundle.function_tolerance = function_tolerance;
+  bundle.compute_covariance = options_.compute_covariance;
+  return SolveBundle(bundle, problem);
+}
+
+/// Tight factors start from a solution without them, and are drawn tight step by step.
+BundleSummary Ablation::SolveRigidity(const BundleOptions& bundle, BundleProblem* problem) const {
+  for (BundleProblem::Human& human : problem->humans) StartLengths(&human);
   BundleOptions loose = bundle;
-  loose.use_rigidity = false;
-  BundleProblem problem;
-  BundleSummary summary;
+  loose.compute_covariance = false;
+  loose.function_tolerance = 1e-4;
+  for (const double factor : {30.0, 10.0, 3.0}) {
+    loose.rigidity_sigma_m = factor * bundle.rigidity_sigma_m;
+    SolveBundle(loose, problem);
+  }
+  return SolveBundle(bundle, problem);
+}
+
+Ablation::Solution Ablation::Solve(AblationRow row) const {
+  const BundleOptions bundle = MakeBundleOptions(row);
+  Solution solution;
+  solution.problem = MakeProblem();
+  solution.summary.has_converged = true;
+  if (row == AblationRow::kBefore) return solution;
   if (bundle.use_motion) {
-    loose.function_tolerance = 1e-6;
-    problem = SolveWithPriorNoise(loose);
-    for (int pass = 0; pass < options_.num_noise_passes; ++pass) {
-      if (pass > 0) SolveBundle(loose, &problem);
-      LearnNoise(&problem);
-    }
-    loose.function_tolerance = bundle.function_tolerance;
+    solution.summary = SolveMotion(bundle, &solution.problem);
   } else {
-    problem = MakeProblem(true);
+    BundleOptions without_rigidity = bundle;
+    without_rigidity.use_rigidity = false;
+    const BundleProblem start = solution.problem;
+    solution.summary = SolveBundle(without_rigidity, &solution.problem);
+    if (!bundle.use_people) CarryObjects(start, &solution.problem);
   }
-  summary = SolveBundle(loose, &problem);
-  if (bundle.use_rigidity) {
-    // Tight factors start from a solution without them, and are drawn tight step by step.
-    for (BundleProblem::Human& human : problem.humans) StartLengths(&human);
-    loose.use_rigidity = true;
-    loose.function_tolerance = 1e-4;
-    for (const double factor : {30.0, 10.0, 3.0}) {
-      loose.rigidity_sigma_m = factor * bundle.rigidity_sigma_m;
-      SolveBundle(loose, &problem);
-    }
-    summary = SolveBundle(bundle, &problem);
-  }
-  *has_converged = summary.has_converged;
-  return problem;
+  if (bundle.use_rigidity) solution.summary = SolveRigidity(bundle, &solution.problem);
+  return solution;
 }
 
 AblationErrors Ablation::Run(AblationRow row) const {
-  bool has_converged = true;
-  const BundleProblem problem = Solve(row, &has_converged);
-  AblationErrors errors = Evaluate(problem);
-  errors.has_converged = has_converged;
+  const Solution solution = Solve(row);
+  AblationErrors errors = Evaluate(solution.problem);
+  errors.has_converged = solution.summary.has_converged;
   return errors;
 }
 

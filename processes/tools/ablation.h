@@ -29,30 +29,42 @@ struct AblationErrors {
 struct AblationOptions {
   int max_iterations = 1000;  ///< of each solve: enough to converge
   double function_tolerance = 1e-10;
+  bool compute_covariance = false;  ///< of the newest pose
   double rigidity_sigma_m = 0.01;
-  double huber_smoothness = 0;
-  TrackNoiseOptions noise;   ///< how the motion of each object is weighed
+  double stereo_rigidity_sigma_m = 0.02;  ///< where depths are as uncertain as stereo makes them
+  TrackNoiseOptions noise;                ///< how the motion of each object is weighed
   int num_noise_passes = 2;  ///< adjustments from which the noise is learnt before the last one
 };
 
-/// Bundle adjustment over a whole simulated sequence, all rows from the same start values.
+/// Bundle adjustment over a whole simulated sequence, all rows from the same start values. The
+/// noise of each object's motion is learnt from the sequence itself; nothing here sees the truth
+/// but Evaluate().
 class Ablation {
  public:
+  struct Solution {
+    BundleProblem problem;
+    BundleSummary summary;  ///< of the last solve
+  };
+
+  /// The sequence is not owned and outlives this.
   Ablation(const AblationOptions& options, const SimulatedSequence& sequence);
 
-  AblationErrors Run(AblationRow row) const;
   /// The problem with start values: first frame fixed, poses from odometry, points as measured.
-  BundleProblem MakeProblem(bool with_objects) const;
-
-  BundleOptions MakeBundleOptions(AblationRow row) const;
+  BundleProblem MakeProblem() const;
+  Solution Solve(AblationRow row) const;
+  /// The errors of a problem's values; `dynamic_m` also where they were no part of the adjustment.
   AblationErrors Evaluate(const BundleProblem& problem) const;
-
-  BundleProblem Solve(AblationRow row, bool* has_converged) const;
+  /// Solve and evaluate.
+  AblationErrors Run(AblationRow row) const;
 
  private:
-  void LearnNoise(BundleProblem* problem) const;
+  BundleOptions MakeBundleOptions(AblationRow row) const;
   /// From the odometry, and from the solution without people: the one with the lower cost.
   BundleProblem SolveWithPriorNoise(const BundleOptions& bundle) const;
+  void LearnNoise(BundleProblem* problem) const;
+  BundleSummary SolveMotion(BundleOptions bundle, BundleProblem* problem) const;
+  BundleSummary SolveRigidity(const BundleOptions& bundle, BundleProblem* problem) const;
+
   AblationOptions options_;
   const SimulatedSequence& sequence_;
 };
