@@ -7,19 +7,12 @@
 
 namespace airdos {
 
-/// How the motion of people enters (paper, eq. 4, 5).
-enum class MotionForm {
-  kVelocity,       ///< torso and head share one velocity per frame pair, smoothed over time
-  kVelocityTrack,  ///< torso and head share one velocity over the whole window
-  kSe3Parts,       ///< the paper's: one rigid motion per rigid part and frame pair
-};
-
 struct BundleOptions {
   bool use_people = true;
   bool compute_covariance = true;  ///< of the newest frame
   bool use_rigidity = true;
   bool use_motion = true;
-  MotionForm motion_form = MotionForm::kVelocity;
+  MotionForm motion_form = MotionForm::kVelocity;  ///< where a person's own is not given
 
   // Solver. Only iterations are limited, never time: the result must not depend on the machine.
   int max_iterations = 6;                    ///< of the first pass
@@ -29,6 +22,7 @@ struct BundleOptions {
   // Huber kernels, in standard deviations of the residual's norm.
   double huber_static = 2.5;
   double huber_dynamic = 2.0;
+  double huber_smoothness = 0;  ///< on changes of a person's velocity; 0: none
 
   // Factor elimination: a factor whose whitened error is larger is dropped before the second pass.
   double eliminate_static = 4.0;
@@ -36,7 +30,7 @@ struct BundleOptions {
   double eliminate_rigidity = 4.0;
   double eliminate_motion = 4.0;
 
-  // People.
+  // People. Motion and acceleration where a person's own noise is not given.
   double rigidity_sigma_m = 0.015;
   double motion_sigma_m = 0.05;
   double motion_max_gap_s = 0.5;          ///< no motion factor across a longer gap in a track

@@ -5,6 +5,7 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <cmath>
+#include <memory>
 
 #include "common/optimization/camera_acceleration_factor.h"
 #include "common/util/check.h"
@@ -27,6 +28,9 @@ BundleGraph::BundleGraph(const BundleOptions& options, BundleProblem* problem)
       problem_(problem),
       static_loss_(options.huber_static),
       dynamic_loss_(options.huber_dynamic),
+      smoothness_loss_(options.huber_smoothness > 0
+                           ? std::make_unique<ceres::HuberLoss>(options.huber_smoothness)
+                           : nullptr),
       ceres_problem_(ProblemOptions()) {
   AddPoses();
   AddLandmarks();

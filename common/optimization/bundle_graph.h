@@ -6,14 +6,15 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <array>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <type_traits>
 #include <vector>
 
 #include "common/optimization/bundle_adjuster.h"
 #include "common/optimization/bundle_problem.h"
+#include "common/optimization/camera_point_factor.h"
 #include "common/optimization/pose_manifold.h"
 #include "common/optimization/reprojection_factor.h"
 
@@ -54,7 +55,7 @@ class BundleGraph {
   /// What one person shows in one frame; null where a joint was not seen.
   struct Sighting {
     int frame = 0;
-    std::array<JointState*, kNumJoints> joints = {};
+    std::vector<JointState*> joints;  ///< one per point of the model
   };
   /// A motion to be written back: of a rigid part (se3 not null) or of the torso at a velocity.
   struct Motion {
@@ -74,11 +75,19 @@ class BundleGraph {
   std::vector<Sighting> Sightings(BundleProblem::Human* human) const;
   void AddRigidity(const std::vector<Sighting>& sightings, BundleProblem::Human* human);
   void AddVelocities(const std::vector<Sighting>& sightings, BundleProblem::Human* human);
-  void AddPartMotions(const Sighting& before, const Sighting& after, BundleProblem::Human* human);
+  /// The motion of each part from one frame to the next, null where there is none.
+  using PartBlocks = std::vector<double*>;
+  PartBlocks AddPartMotions(const Sighting& before, const Sighting& after,
+                            BundleProblem::Human* human);
+  void AddSe3Motions(bool is_smooth, const std::vector<Sighting>& sightings,
+                     BundleProblem::Human* human);
+  void AddTrackMotions(const std::vector<Sighting>& sightings, BundleProblem::Human* human);
+  MotionNoise NoiseOf(const BundleProblem::Human& human) const;
   void AddRotationDamping(const std::vector<const JointState*>& points, double* motion);
   void AddMotionFactor(ceres::CostFunction* cost, JointState* before, JointState* after,
                        double* motion, BundleProblem::Human* human);
-  double StepBetween(const Sighting& before, const Sighting& after) const;
+  double StepBetween(const Sighting& before, const Sighting& after,
+                     const BundleProblem::Human& human) const;
   template <class Observation>
   void AddReprojection(Observation* observation, bool has_right, double* p_W, Kind kind);
   double Threshold(Kind kind) const;
@@ -92,6 +101,7 @@ class BundleGraph {
   PoseManifold manifold_;
   ceres::HuberLoss static_loss_;
   ceres::HuberLoss dynamic_loss_;
+  std::unique_ptr<ceres::LossFunction> smoothness_loss_;  // or null
   std::vector<PoseBlock> poses_;
   std::deque<PoseBlock> motions_;  // addresses stay
   std::deque<Eigen::Vector3d> velocities_;
@@ -110,7 +120,9 @@ void BundleGraph::AddReprojection(Observation* observation, bool has_right, doub
   if (observation->is_eliminated) return;
   const StereoCamera* camera = &problem_->camera;
   ceres::CostFunction* cost = nullptr;
-  if constexpr (std::is_same_v<Observation, BundleProblem::JointState>) {
+  if (observation->point) {
+    cost = new CameraPointFactor(observation->point->p_C, observation->point->sigma_m);
+  } else if constexpr (std::is_same_v<Observation, BundleProblem::JointState>) {
     const Eigen::Matrix3d information = observation->covariance_px2.inverse();
     cost = new ReprojectionFactor<3>(camera, observation->uvu_px,
                                      Eigen::Matrix3d(information.llt().matrixU()));

@@ -1,5 +1,7 @@
 #include <Eigen/Core>
+#include <Eigen/SVD>
 #include <cmath>
+#include <utility>
 
 #include "common/optimization/bundle_graph.h"
 #include "common/optimization/human_factors.h"
@@ -7,15 +9,17 @@
 namespace airdos {
 namespace {
 
+/// Steps whose durations differ by less, relatively, are the same to a shared motion.
+constexpr double kSameStep = 0.01;
+
 using Pair = std::pair<BundleProblem::JointState*, BundleProblem::JointState*>;
 
-/// The joints of `wanted` (-1: none) that were seen before and after.
-template <class Joints, class Sighting>
-std::vector<Pair> SharedJoints(const Joints& wanted, const Sighting& before,
+/// The joints of `wanted` that were seen before and after.
+template <class Sighting>
+std::vector<Pair> SharedJoints(const std::vector<int>& wanted, const Sighting& before,
                                const Sighting& after) {
   std::vector<Pair> shared;
   for (const int joint : wanted) {
-    if (joint < 0) continue;
     const auto j = static_cast<std::size_t>(joint);
     if (before.joints[j] != nullptr && after.joints[j] != nullptr) {
       shared.emplace_back(before.joints[j], after.joints[j]);
@@ -36,6 +40,30 @@ Eigen::Vector3d MeanStep(const std::vector<Pair>& pairs) {
   return sum / static_cast<double>(pairs.size());
 }
 
+/// The rigid motion that takes the first points of the pairs to the second (least squares). Two
+/// points leave the turn about their line free, so their motion starts without a turn.
+BundleProblem::PartMotion StartMotion(const BundleProblem::Human& human, int part,
+                                      const std::vector<Pair>& pairs) {
+  for (const BundleProblem::PartMotion& start : human.start_motions) {
+    if (start.part == part) return start;
+  }
+  const Eigen::Vector3d centroid_W = Centroid(pairs);
+  const Eigen::Vector3d step = MeanStep(pairs);
+  Se3 motion_W{Eigen::Quaterniond::Identity(), step};
+  if (pairs.size() > 2) {
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (const auto& [before, after] : pairs) {
+      covariance += (after->p_W - centroid_W - step) * (before->p_W - centroid_W).transpose();
+    }
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
+                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
+    motion_W.rotation =
+        Eigen::Matrix3d(svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose());
+  }
+  return {0, part, centroid_W, motion_W};
+}
+
 }  // namespace
 
 void BundleGraph::AddHuman(BundleProblem::Human* human) {
@@ -48,14 +76,19 @@ void BundleGraph::AddHuman(BundleProblem::Human* human) {
   const std::vector<Sighting> sightings = Sightings(human);
   if (options_.use_rigidity) AddRigidity(sightings, human);
   if (!options_.use_motion) return;
-  if (options_.motion_form != MotionForm::kSe3Parts) {
-    AddVelocities(sightings, human);
-    return;
-  }
-  for (std::size_t i = 1; i < sightings.size(); ++i) {
-    if (StepBetween(sightings[i - 1], sightings[i]) > 0) {
-      AddPartMotions(sightings[i - 1], sightings[i], human);
-    }
+  const MotionForm form = human->motion_form.value_or(options_.motion_form);
+  switch (form) {
+    case MotionForm::kVelocity:
+    case MotionForm::kVelocityTrack:
+      AddVelocities(sightings, human);
+      break;
+    case MotionForm::kSe3Parts:
+    case MotionForm::kSe3Smooth:
+      AddSe3Motions(form == MotionForm::kSe3Smooth, sightings, human);
+      break;
+    case MotionForm::kSe3Track:
+      AddTrackMotions(sightings, human);
+      break;
   }
 }
 
@@ -63,7 +96,8 @@ std::vector<BundleGraph::Sighting> BundleGraph::Sightings(BundleProblem::Human* 
   std::vector<Sighting> sightings;
   for (JointState& joint : human->joints) {
     if (sightings.empty() || sightings.back().frame != joint.frame) {
-      sightings.push_back({joint.frame, {}});
+      const auto num_points = static_cast<std::size_t>(human->model->num_points);
+      sightings.push_back({joint.frame, std::vector<JointState*>(num_points, nullptr)});
     }
     sightings.back().joints[static_cast<std::size_t>(joint.joint)] = &joint;
   }
@@ -72,20 +106,23 @@ std::vector<BundleGraph::Sighting> BundleGraph::Sightings(BundleProblem::Human* 
 
 /// Time in s from one sighting to the next; zero where a motion factor between them would say
 /// nothing.
-double BundleGraph::StepBetween(const Sighting& before, const Sighting& after) const {
+double BundleGraph::StepBetween(const Sighting& before, const Sighting& after,
+                                const BundleProblem::Human& human) const {
+  if (human.track_breaks.count(after.frame) > 0) return 0;
   const double step_s = problem_->frames[static_cast<std::size_t>(after.frame)].time_s -
                         problem_->frames[static_cast<std::size_t>(before.frame)].time_s;
   return step_s > 0 && step_s <= options_.motion_max_gap_s ? step_s : 0;
 }
 
 void BundleGraph::AddRigidity(const std::vector<Sighting>& sightings, BundleProblem::Human* human) {
-  for (std::size_t segment = 0; segment < kNumSegments; ++segment) {
+  const std::vector<ArticulatedModel::Segment>& segments = human->model->segments;
+  for (std::size_t segment = 0; segment < segments.size(); ++segment) {
     std::optional<double>& length_m = human->segment_length_m[segment];
     if (!length_m) continue;
     int num_factors = 0;
     for (const Sighting& sighting : sightings) {
-      JointState* a = sighting.joints[static_cast<std::size_t>(kSegments[segment].joint_a)];
-      JointState* b = sighting.joints[static_cast<std::size_t>(kSegments[segment].joint_b)];
+      JointState* a = sighting.joints[static_cast<std::size_t>(segments[segment].point_a)];
+      JointState* b = sighting.joints[static_cast<std::size_t>(segments[segment].point_b)];
       if (a == nullptr || b == nullptr) continue;
       const ceres::ResidualBlockId id =
           ceres_problem_.AddResidualBlock(new RigidityFactor(options_.rigidity_sigma_m),
@@ -113,14 +150,18 @@ void BundleGraph::AddMotionFactor(ceres::CostFunction* cost, JointState* before,
 
 void BundleGraph::AddVelocities(const std::vector<Sighting>& sightings,
                                 BundleProblem::Human* human) {
+  const MotionNoise noise = NoiseOf(*human);
+  const bool is_whole_track =
+      human->motion_form.value_or(options_.motion_form) == MotionForm::kVelocityTrack;
   double* velocity_before = nullptr;  // of the pair just before this one
   double step_before_s = 0;
   for (std::size_t i = 1; i < sightings.size(); ++i) {
-    const double step_s = StepBetween(sightings[i - 1], sightings[i]);
-    const std::vector<Pair> pairs = SharedJoints(kBodyJoints, sightings[i - 1], sightings[i]);
-    const bool is_whole_track = options_.motion_form == MotionForm::kVelocityTrack;
+    const double step_s = StepBetween(sightings[i - 1], sightings[i], *human);
+    const std::vector<Pair> pairs =
+        SharedJoints(human->model->body_points, sightings[i - 1], sightings[i]);
     if (step_s == 0 || pairs.empty()) {
-      if (!is_whole_track) velocity_before = nullptr;
+      const bool is_break = human->track_breaks.count(sightings[i].frame) > 0;
+      if (!is_whole_track || is_break) velocity_before = nullptr;
       continue;
     }
     double* velocity = velocity_before;
@@ -129,13 +170,13 @@ void BundleGraph::AddVelocities(const std::vector<Sighting>& sightings,
       velocity = velocities_.back().data();
       people_blocks_.push_back(velocity);
       if (velocity_before != nullptr) {
-        const double sigma_m_s = options_.person_acceleration_m_s2 * 0.5 * (step_s + step_before_s);
-        ceres_problem_.AddResidualBlock(new VelocitySmoothnessFactor(sigma_m_s), nullptr,
-                                        velocity_before, velocity);
+        const double sigma_m_s = noise.acceleration_m_s2 * 0.5 * (step_s + step_before_s);
+        ceres_problem_.AddResidualBlock(new VelocitySmoothnessFactor(sigma_m_s),
+                                        smoothness_loss_.get(), velocity_before, velocity);
       }
     }
     for (const auto& [before, after] : pairs) {
-      AddMotionFactor(new VelocityFactor(step_s, options_.motion_sigma_m), before, after, velocity,
+      AddMotionFactor(new VelocityFactor(step_s, noise.motion_sigma_m), before, after, velocity,
                       human);
     }
     found_motions_.push_back(
@@ -145,26 +186,96 @@ void BundleGraph::AddVelocities(const std::vector<Sighting>& sightings,
   }
 }
 
-void BundleGraph::AddPartMotions(const Sighting& before, const Sighting& after,
-                                 BundleProblem::Human* human) {
-  for (int part = 0; part < kNumParts; ++part) {
+void BundleGraph::AddSe3Motions(bool is_smooth, const std::vector<Sighting>& sightings,
+                                BundleProblem::Human* human) {
+  const MotionNoise noise = NoiseOf(*human);
+  PartBlocks blocks_before(human->model->parts.size(), nullptr);
+  double step_before_s = 0;
+  for (std::size_t i = 1; i < sightings.size(); ++i) {
+    const double step_s = StepBetween(sightings[i - 1], sightings[i], *human);
+    PartBlocks blocks(human->model->parts.size(), nullptr);
+    if (step_s > 0) blocks = AddPartMotions(sightings[i - 1], sightings[i], human);
+    for (std::size_t part = 0; is_smooth && part < blocks.size(); ++part) {
+      if (blocks[part] == nullptr || blocks_before[part] == nullptr) continue;
+      const double mean_step_s = 0.5 * (step_s + step_before_s);
+      ceres_problem_.AddResidualBlock(
+          new PartSmoothnessFactor(step_before_s, step_s, noise.acceleration_m_s2 * mean_step_s,
+                                   noise.angular_acceleration_rad_s2 * mean_step_s),
+          smoothness_loss_.get(), blocks_before[part], blocks[part]);
+    }
+    blocks_before = std::move(blocks);
+    step_before_s = step_s;
+  }
+}
+
+BundleGraph::PartBlocks BundleGraph::AddPartMotions(const Sighting& before, const Sighting& after,
+                                                    BundleProblem::Human* human) {
+  PartBlocks blocks(human->model->parts.size(), nullptr);
+  const double sigma_m = NoiseOf(*human).motion_sigma_m;
+  for (int part = 0; part < static_cast<int>(human->model->parts.size()); ++part) {
     const std::vector<Pair> pairs =
-        SharedJoints(kParts[static_cast<std::size_t>(part)].joints, before, after);
+        SharedJoints(human->model->parts[static_cast<std::size_t>(part)], before, after);
     if (pairs.size() < 2) continue;  // one point has no rotation
     const Eigen::Vector3d centroid_W = Centroid(pairs);
     motions_.push_back(ToPoseBlock({Eigen::Quaterniond::Identity(), MeanStep(pairs)}));
     double* motion = motions_.back().data();
+    blocks[static_cast<std::size_t>(part)] = motion;
     people_blocks_.push_back(motion);
     ceres_problem_.AddParameterBlock(motion, kPoseBlockSize, &manifold_);
     std::vector<const JointState*> points;
     for (const auto& [joint_before, joint_after] : pairs) {
-      AddMotionFactor(new PartMotionFactor(centroid_W, options_.motion_sigma_m), joint_before,
-                      joint_after, motion, human);
+      AddMotionFactor(new PartMotionFactor(centroid_W, sigma_m), joint_before, joint_after, motion,
+                      human);
       points.push_back(joint_before);
     }
     AddRotationDamping(points, motion);
     found_motions_.push_back({human, after.frame, part, centroid_W, motion, nullptr, 0});
   }
+  return blocks;
+}
+
+/// One motion per part for the whole track, about the centroid of the part where it was first seen
+/// twice in a row. It is the motion of the track's first step; later steps of another duration (a
+/// frame was missed) get no factor.
+void BundleGraph::AddTrackMotions(const std::vector<Sighting>& sightings,
+                                  BundleProblem::Human* human) {
+  const double sigma_m = NoiseOf(*human).motion_sigma_m;
+  for (int part = 0; part < static_cast<int>(human->model->parts.size()); ++part) {
+    double* motion = nullptr;
+    double unit_s = 0;
+    Eigen::Vector3d centroid_W;
+    for (std::size_t i = 1; i < sightings.size(); ++i) {
+      const double step_s = StepBetween(sightings[i - 1], sightings[i], *human);
+      const std::vector<Pair> pairs = SharedJoints(
+          human->model->parts[static_cast<std::size_t>(part)], sightings[i - 1], sightings[i]);
+      if (human->track_breaks.count(sightings[i].frame) > 0) motion = nullptr;
+      if (step_s == 0 || pairs.empty()) continue;
+      if (motion == nullptr) {
+        if (pairs.size() < 2) continue;  // one point has no rotation
+        BundleProblem::PartMotion start = StartMotion(*human, part, pairs);
+        centroid_W = start.centroid_W;
+        motions_.push_back(ToPoseBlock(start.motion_W));
+        motion = motions_.back().data();
+        unit_s = step_s;
+        people_blocks_.push_back(motion);
+        ceres_problem_.AddParameterBlock(motion, kPoseBlockSize, &manifold_);
+        std::vector<const JointState*> points;
+        for (const Pair& pair : pairs) points.push_back(pair.first);
+        if (points.size() == 2) AddRotationDamping(points, motion);
+      }
+      if (std::abs(step_s - unit_s) > kSameStep * unit_s) continue;
+      for (const auto& [joint_before, joint_after] : pairs) {
+        AddMotionFactor(new PartMotionFactor(centroid_W, sigma_m), joint_before, joint_after,
+                        motion, human);
+      }
+      found_motions_.push_back({human, sightings[i].frame, part, centroid_W, motion, nullptr, 0});
+    }
+  }
+}
+
+MotionNoise BundleGraph::NoiseOf(const BundleProblem::Human& human) const {
+  return human.motion_noise.value_or(
+      MotionNoise{options_.motion_sigma_m, options_.person_acceleration_m_s2, 1.0});
 }
 
 /// Two points leave the rotation about the line through them free; three or more may still lie

@@ -75,6 +75,27 @@ bool PartMotionFactor::Evaluate(double const* const* parameters, double* residua
   return true;
 }
 
+bool PartSmoothnessFactor::Evaluate(double const* const* parameters, double* residuals,
+                                    double** jacobians) const {
+  Eigen::Map<Vector6d> r(residuals);
+  r.setZero();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double sign = i == 0 ? -1 : 1;
+    const Se3 motion = FromPoseBlock(parameters[i]);
+    const Eigen::Vector3d turn = LogSo3(motion.rotation);
+    const double linear = sign * weight_linear_ / step_s_[i];
+    const double angular = sign * weight_angular_ / step_s_[i];
+    r.head<3>() += linear * motion.translation;
+    r.tail<3>() += angular * turn;
+    if (jacobians == nullptr || jacobians[i] == nullptr) continue;
+    Eigen::Map<Eigen::Matrix<double, 6, kPoseBlockSize, Eigen::RowMajor>> J(jacobians[i]);
+    J.setZero();
+    J.topLeftCorner<3, 3>() = linear * motion.rotation.toRotationMatrix();
+    J.block<3, 3>(3, 3) = angular * RightJacobianInverseSo3(turn);
+  }
+  return true;
+}
+
 bool RotationDampingFactor::Evaluate(double const* const* parameters, double* residuals,
                                      double** jacobians) const {
   const Eigen::Vector3d turn = LogSo3(FromPoseBlock(parameters[0]).rotation);

@@ -4,6 +4,7 @@
 #include <ceres/sized_cost_function.h>
 
 #include <Eigen/Core>
+#include <array>
 
 #include "common/optimization/pose_manifold.h"
 
@@ -69,6 +70,28 @@ class VelocitySmoothnessFactor final : public ceres::SizedCostFunction<3, 3, 3> 
 
  private:
   double weight_;
+};
+
+/// The rigid motion of a part changes little between consecutive frame pairs of h_1 and h_2
+/// seconds:
+///
+///   r = ((t_2 / h_2 - t_1 / h_1) / sigma_v, (Log R_2 / h_2 - Log R_1 / h_1) / sigma_w)
+///
+/// Blocks: both motions (7 each: t, R, of a PartMotionFactor). sigma_v in m/s, sigma_w in rad/s.
+class PartSmoothnessFactor final
+    : public ceres::SizedCostFunction<6, kPoseBlockSize, kPoseBlockSize> {
+ public:
+  PartSmoothnessFactor(double step_1_s, double step_2_s, double sigma_m_s, double sigma_rad_s)
+      : step_s_{step_1_s, step_2_s},
+        weight_linear_(1 / sigma_m_s),
+        weight_angular_(1 / sigma_rad_s) {}
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  std::array<double, 2> step_s_;
+  double weight_linear_;
+  double weight_angular_;
 };
 
 /// Motion of a joint as one rigid motion (R, t) per rigid part and frame pair (paper, eq. 4, 5),

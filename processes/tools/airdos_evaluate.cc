@@ -1,17 +1,22 @@
 // airdos-evaluate: how good an estimate is, given the truth.
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <string>
+#include <vector>
 
 #include "common/evaluation/people_report.h"
 #include "common/evaluation/trajectory_plot.h"
 #include "common/evaluation/trajectory_report.h"
+#include "common/simulation/settings.h"
 #include "common/util/error.h"
 #include "common/util/version.h"
+#include "processes/tools/ablation_report.h"
+#include "processes/tools/do_no_harm.h"
 
 namespace airdos {
 namespace {
@@ -119,6 +124,59 @@ void RunPeople(const PeopleArguments& arguments) {
   if (!arguments.json.empty()) WriteJson(ToJson(report), arguments.json);
 }
 
+struct AblationArguments {
+  std::vector<std::string> groups;
+  bool do_no_harm = false;
+  int num_sequences = 0;
+  std::uint64_t seed = 1;
+  std::string json;
+};
+
+CLI::App* AddAblationCommand(CLI::App* app, AblationArguments* arguments) {
+  CLI::App* const command = app->add_subcommand(
+      "ablation", "The paper's table: bundle adjustment of simulated sequences, with and without");
+  command
+      ->add_option("--groups", arguments->groups,
+                   "settings of the simulator (default: the paper's four groups)")
+      ->check(CLI::IsMember(SettingNames()));
+  command->add_flag("--do-no-harm", arguments->do_no_harm,
+                    "instead: how people change the camera's errors, in every setting");
+  command
+      ->add_option("--sequences", arguments->num_sequences,
+                   "of each group (default: 10; do-no-harm: 100)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--seed", arguments->seed, "of each group's first sequence")
+      ->capture_default_str();
+  command->add_option("--json", arguments->json, "file to write all figures to");
+  return command;
+}
+
+void RunAblationCommand(AblationArguments arguments) {
+  const bool do_no_harm = arguments.do_no_harm;
+  if (arguments.groups.empty()) arguments.groups = do_no_harm ? SettingNames() : PaperGroups();
+  if (arguments.num_sequences == 0) arguments.num_sequences = do_no_harm ? 100 : 10;
+  nlohmann::json json;
+  const auto show = [](const std::string& text) {
+    std::fputs(text.c_str(), stdout);
+    std::fflush(stdout);
+  };
+  if (do_no_harm) show(DoNoHarmTitle());
+  for (const std::string& setting : arguments.groups) {
+    if (do_no_harm) {
+      const DoNoHarmSetting runs = RunDoNoHarm(DefaultDoNoHarmOptions(), setting, arguments.seed,
+                                               arguments.num_sequences, nullptr);
+      show(ToLine(runs));
+      json.push_back(ToJson(runs));
+    } else {
+      const AblationGroup group =
+          RunAblation({}, setting, arguments.seed, arguments.num_sequences, nullptr);
+      show(ToTable(group) + "\n");
+      json.push_back(ToJson(group));
+    }
+  }
+  if (!arguments.json.empty()) WriteJson(json, arguments.json);
+}
+
 }  // namespace
 }  // namespace airdos
 
@@ -131,10 +189,14 @@ int main(int argc, char** argv) {
   airdos::PeopleArguments people;
   CLI::App* const of_trajectory = airdos::AddTrajectoryCommand(&app, &trajectory);
   airdos::AddPeopleCommand(&app, &people);
+  airdos::AblationArguments ablation;
+  CLI::App* const of_ablation = airdos::AddAblationCommand(&app, &ablation);
   try {
     app.parse(argc, argv);
     if (of_trajectory->parsed()) {
       airdos::RunTrajectory(trajectory);
+    } else if (of_ablation->parsed()) {
+      airdos::RunAblationCommand(ablation);
     } else {
       airdos::RunPeople(people);
     }

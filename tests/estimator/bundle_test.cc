@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <iostream>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "common/optimization/bundle_adjuster.h"
@@ -205,6 +207,74 @@ TEST(BundleTest, CovarianceMatchesTheScatterOfTheErrors) {
     sum += error.dot(summary.newest_covariance->ldlt().solve(error));
   }
   EXPECT_NEAR(sum / kRuns, 6, 2);
+}
+
+/// A box of eight points that turns and drives, measured in camera axes by a camera that sees no
+/// static point at all: only the motion that its pairs of frames share can place the camera.
+BundleProblem DrivingBox(const Se3& step_W, std::vector<Se3>* truth) {
+  auto model = std::make_shared<ArticulatedModel>();
+  std::vector<Eigen::Vector3d> points_W;
+  model->parts.emplace_back();
+  for (int i = 0; i < 8; ++i) {
+    points_W.emplace_back(i & 1 ? 1 : -1, i & 2 ? 0.5 : -0.5, i & 4 ? 8 : 5);
+    model->parts[0].push_back(i);
+  }
+  model->num_points = 8;
+  model->segments = {{0, 1}, {1, 2}, {2, 4}, {4, 7}};
+  EXPECT_TRUE(model->IsValid());
+  const Eigen::Vector3d centre_W(0, 0, 6.5);
+
+  BundleProblem problem;
+  problem.humans.resize(1);
+  BundleProblem::Human& box = problem.humans[0];
+  box.model = model;
+  box.motion_form = MotionForm::kSe3Track;
+  box.motion_noise = MotionNoise{0.01, 0};
+  box.segment_length_m.assign(4, std::nullopt);
+  for (int frame = 0; frame < 6; ++frame) {
+    const Se3 T_W_C{ExpSo3({0, 0.02 * frame, 0}), {0.1 * frame, 0, 0.05 * frame * frame}};
+    truth->push_back(T_W_C);
+    // The start of all but the first three (which fix the box's motion) is far off.
+    const bool is_fixed = frame < 3;
+    Vector6d off;
+    off << 0.2, -0.1, 0.3, 0.02, -0.05, 0.03;
+    const Se3 T_W_C_start = is_fixed ? T_W_C : Boxplus(T_W_C, off);
+    problem.frames.push_back({FrameId{frame}, 0.1 * frame, T_W_C_start, is_fixed});
+    for (int i = 0; i < 8; ++i) {
+      Eigen::Vector3d& p_W = points_W[static_cast<std::size_t>(i)];
+      BundleProblem::JointState point;
+      point.frame = frame;
+      point.joint = i;
+      point.point = {T_W_C.inverse() * p_W, 0.05};
+      point.p_W = T_W_C_start * point.point->p_C;
+      box.joints.push_back(point);
+      p_W = step_W.rotation * (p_W - centre_W) + centre_W + step_W.translation;
+    }
+  }
+  return problem;
+}
+
+TEST(BundleTest, ARigidObjectsMotionOverItsTrackPlacesTheCamera) {
+  std::vector<Se3> truth;
+  const Se3 step_W{ExpSo3({0, 0.05, 0.01}), {0.05, 0, 0.1}};
+  BundleProblem problem = DrivingBox(step_W, &truth);
+  BundleOptions options = Thorough();
+  options.huber_dynamic = 1e6;
+  options.max_iterations_after_elimination = 0;
+  const BundleSummary summary = SolveBundle(options, &problem);
+  EXPECT_EQ(summary.num_motion, 5 * 8);
+  EXPECT_LT(summary.final_cost, 1e-10);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    EXPECT_LT(Boxminus(problem.frames[i].T_W_C, truth[i]).norm(), 1e-6) << i;
+  }
+  ASSERT_EQ(problem.humans[0].motions.size(), 5U);
+  const BundleProblem::PartMotion& motion = problem.humans[0].motions[4];
+  EXPECT_LT(LogSo3(motion.motion_W.rotation.conjugate() * step_W.rotation).norm(), 1e-6);
+
+  // A step that took twice the time gets no factor.
+  problem = DrivingBox(step_W, &truth);
+  problem.frames[5].time_s += 0.1;
+  EXPECT_EQ(SolveBundle(options, &problem).num_motion, 4 * 8);
 }
 
 TEST(BundleTest, DegenerateProblemsDoNotCrash) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/optimization/camera_acceleration_factor.h"
+#include "common/optimization/camera_point_factor.h"
 #include "common/optimization/human_factors.h"
 #include "common/optimization/pose_manifold.h"
 #include "common/optimization/reprojection_factor.h"
@@ -135,6 +136,22 @@ TEST(ReprojectionFactorTest, APointBehindTheCameraIsALargeFiniteError) {
   const Eigen::VectorXd r = Residual(factor, {Block(Se3()), Block(Eigen::Vector3d(0.1, 0.1, -2))});
   EXPECT_TRUE(r.allFinite());
   EXPECT_GT(r.norm(), 1000);
+}
+
+TEST(CameraPointFactorTest, ValueAndDerivatives) {
+  std::mt19937 generator(7);
+  const Se3 T_W_C = RandomPose(&generator, 0.5);
+  const Eigen::Vector3d p_C(0.4, -0.3, 5);
+  EXPECT_LT(Residual(CameraPointFactor(p_C, 0.05), {Block(T_W_C), Block(T_W_C * p_C)}).norm(),
+            1e-10);
+  // By hand: a camera at x = 1 m that looks along W's -x (a quarter turn about y) sees the point
+  // 3 m before it at depth 3; 0.1 m more was measured, at sigma 0.05 m: -2.
+  const Se3 turned{ExpSo3({0, -M_PI / 2, 0}), {1, 0, 0}};
+  const Eigen::VectorXd r = Residual(CameraPointFactor({0, 0, 3.1}, 0.05),
+                                     {Block(turned), Block(Eigen::Vector3d(-2, 0, 0))});
+  EXPECT_LT((r - Eigen::Vector3d(0, 0, -2)).norm(), 1e-10);
+  ExpectDerivativesMatch(CameraPointFactor({0.1, 0.2, 4}, 0.05),
+                         {Block(T_W_C), Block(T_W_C * p_C)});
 }
 
 TEST(RigidityFactorTest, ValueAndDerivatives) {
