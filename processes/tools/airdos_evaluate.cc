@@ -2,142 +2,21 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
-#include <string>
 
-#include "common/evaluation/people_report.h"
-#include "common/evaluation/trajectory_plot.h"
-#include "common/evaluation/trajectory_report.h"
 #include "common/util/error.h"
 #include "common/util/version.h"
-
-namespace airdos {
-namespace {
-
-struct TrajectoryArguments {
-  std::string estimate;
-  std::string ground_truth;
-  std::string times;
-  std::string axes = "auto";
-  double max_difference_s = 0.01;
-  std::size_t num_frames = 0;
-  std::string json;
-  std::string plot;
-};
-
-CLI::App* AddTrajectoryCommand(CLI::App* app, TrajectoryArguments* arguments) {
-  CLI::App* const command = app->add_subcommand("trajectory", "Errors of a camera trajectory");
-  command->add_option("--estimate", arguments->estimate, "TUM or KITTI file, optical axes")
-      ->required();
-  command->add_option("--ground-truth", arguments->ground_truth, "TUM or KITTI file")->required();
-  command->add_option("--times", arguments->times,
-                      "times (s) of the rows of a KITTI file, one a line, to compare it with TUM");
-  command
-      ->add_option("--gt-axes", arguments->axes,
-                   "axes of the ground truth; auto compares motions with the estimate's")
-      ->check(CLI::IsMember({"auto", "optical", "ned"}))
-      ->capture_default_str();
-  command->add_option("--max-diff", arguments->max_difference_s, "largest time difference (s)")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--frames", arguments->num_frames,
-                      "images of the sequence, for the completeness (default: as many as the "
-                      "ground truth has poses)");
-  command->add_option("--json", arguments->json, "file to write all figures to");
-  command->add_option("--plot", arguments->plot, "PNG file to draw trajectories and errors into");
-  return command;
-}
-
-void WriteJson(const nlohmann::json& json, const std::string& path) {
-  std::ofstream file(path);
-  file << json.dump(1) << "\n";
-  if (!file.flush()) throw InputError(path + ": cannot be written");
-}
-
-void RunTrajectory(const TrajectoryArguments& arguments) {
-  Trajectory estimate = ReadTrajectory(arguments.estimate);
-  Trajectory ground_truth = ReadTrajectory(arguments.ground_truth);
-  if (!arguments.times.empty()) {
-    if (!estimate.has_times) SetTimes(arguments.times, &estimate);
-    if (!ground_truth.has_times) SetTimes(arguments.times, &ground_truth);
-  }
-  EvaluationOptions options;
-  options.max_time_difference_s = arguments.max_difference_s;
-  options.num_frames = arguments.num_frames;
-  if (arguments.axes == "ned") options.axes = GroundTruthAxes::kNed;
-  if (arguments.axes == "optical") options.axes = GroundTruthAxes::kOptical;
-  const TrajectoryReport report = EvaluateTrajectory(estimate, ground_truth, options);
-  std::fputs(ToTable(report).c_str(), stdout);
-  if (!arguments.json.empty()) {
-    nlohmann::json json = ToJson(report);
-    json["estimate"] = arguments.estimate;
-    json["ground_truth"] = arguments.ground_truth;
-    WriteJson(json, arguments.json);
-  }
-  if (!arguments.plot.empty()) {
-    WritePng(DrawEvaluation(report, arguments.estimate), arguments.plot);
-  }
-}
-
-struct PeopleArguments {
-  std::string people;
-  std::string joints;
-  std::string estimate;
-  std::string ground_truth;
-  double max_distance_m = 0.5;
-  std::string json;
-};
-
-CLI::App* AddPeopleCommand(CLI::App* app, PeopleArguments* arguments) {
-  CLI::App* const command = app->add_subcommand("people", "Errors of people's joints, in 3-D");
-  command->add_option("--people", arguments->people, "people.jsonl of a map")->required();
-  command->add_option("--joints", arguments->joints, "true joints: joints_gt.json, or its .gz")
-      ->required();
-  command->add_option("--estimate", arguments->estimate, "trajectory.tum of the same map")
-      ->required();
-  command
-      ->add_option("--ground-truth", arguments->ground_truth,
-                   "TUM file of the true camera, optical axes, in the world of the true joints")
-      ->required();
-  command->add_option("--max-distance", arguments->max_distance_m, "of a match, mean of joints (m)")
-      ->capture_default_str();
-  command->add_option("--json", arguments->json, "file to write all figures to");
-  return command;
-}
-
-void RunPeople(const PeopleArguments& arguments) {
-  constexpr double kMaxTimeDifferenceS = 0.001;
-  const MatchedTrajectories cameras =
-      Associate(ReadTrajectory(arguments.estimate), ReadTrajectory(arguments.ground_truth),
-                kMaxTimeDifferenceS);
-  const PeopleReport report =
-      EvaluatePeople(ReadPeople(arguments.people), ReadTruePeople(arguments.joints), cameras,
-                     arguments.max_distance_m);
-  std::fputs(ToTable(report).c_str(), stdout);
-  if (!arguments.json.empty()) WriteJson(ToJson(report), arguments.json);
-}
-
-}  // namespace
-}  // namespace airdos
+#include "processes/tools/evaluate_command.h"
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
   CLI::App app("How good an estimate is, given the truth");
   app.set_version_flag("--version", airdos::kVersion);
   app.require_subcommand(1);
-  airdos::TrajectoryArguments trajectory;
-  airdos::PeopleArguments people;
-  CLI::App* const of_trajectory = airdos::AddTrajectoryCommand(&app, &trajectory);
-  airdos::AddPeopleCommand(&app, &people);
+  airdos::AddTrajectoryCommand(&app);
+  airdos::AddPeopleCommand(&app);
   try {
     app.parse(argc, argv);
-    if (of_trajectory->parsed()) {
-      airdos::RunTrajectory(trajectory);
-    } else {
-      airdos::RunPeople(people);
-    }
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : airdos::kExitBadInput;
   } catch (const airdos::InputError& error) {
