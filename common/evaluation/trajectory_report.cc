@@ -89,12 +89,13 @@ TrajectoryReport EvaluateTrajectory(const Trajectory& estimate, const Trajectory
                      std::to_string(report.num_ground_truth) +
                      " of the ground truth: at least 2 are needed (see --max-diff)");
   }
-  const std::size_t num_frames =
-      options.num_frames > 0 ? options.num_frames : report.num_ground_truth;
-  report.completeness = static_cast<double>(report.num_matched) / static_cast<double>(num_frames);
+  report.num_frames = options.num_frames > 0 ? options.num_frames : report.num_ground_truth;
+  report.completeness =
+      static_cast<double>(report.num_matched) / static_cast<double>(report.num_frames);
   DecideAxes(matched, options, &report);
   for (TrajectoryPose& pose : matched.ground_truth) pose = ToOptical(pose, report.axes);
 
+  report.num_lost = CountLostFrames(matched, report.num_frames);
   report.path_m = PathLengths(matched.ground_truth).back();
   if (report.has_times) {
     report.duration_s = matched.ground_truth.back().time_s - matched.ground_truth.front().time_s;
@@ -116,6 +117,8 @@ std::string ToTable(const TrajectoryReport& r) {
   std::string text =
       Format("%zu poses estimated, %zu in the ground truth, %zu matched: %.1f %% complete\n",
              r.num_estimate, r.num_ground_truth, r.num_matched, 100 * r.completeness);
+  text += Format("%zu of %zu frames lost (no pose, or a step wrong by over %.2f m or %.0f deg)\n",
+                 r.num_lost, r.num_frames, kLostTranslationM, kLostRotationDeg);
   text += Format("path %.3f m", r.path_m);
   if (r.has_times) text += Format(" in %.3f s", r.duration_s);
   text += Format("\nground truth axes: %s, ", NameOf(r.axes)) + r.axes_reason + "\n\n";
@@ -149,6 +152,8 @@ nlohmann::json ToJson(const TrajectoryReport& r) {
           {"poses_ground_truth", r.num_ground_truth},
           {"poses_matched", r.num_matched},
           {"completeness", r.completeness},
+          {"frames", r.num_frames},
+          {"frames_lost", r.num_lost},
           {"path_m", r.path_m},
           {"duration_s", r.has_times ? nlohmann::json(r.duration_s) : nlohmann::json(nullptr)},
           {"ground_truth_axes", NameOf(r.axes)},

@@ -25,9 +25,11 @@ struct TrajectoryReport {
   std::size_t num_estimate = 0;
   std::size_t num_ground_truth = 0;
   std::size_t num_matched = 0;
-  double completeness = 0;  ///< matched poses / frames (see EvaluationOptions::num_frames)
-  double path_m = 0;        ///< of the ground truth's matched poses
-  double duration_s = 0;    ///< of the matched poses; 0 for KITTI rows
+  double completeness = 0;     ///< matched poses / frames (see EvaluationOptions::num_frames)
+  std::size_t num_frames = 0;  ///< EvaluationOptions::num_frames, or what stands for it
+  std::size_t num_lost = 0;    ///< see CountLostFrames()
+  double path_m = 0;           ///< of the ground truth's matched poses
+  double duration_s = 0;       ///< of the matched poses; 0 for KITTI rows
 
   GroundTruthAxes axes = GroundTruthAxes::kOptical;
   std::string axes_reason;

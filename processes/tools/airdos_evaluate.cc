@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   airdos::AddTrajectoryCommand(&app);
   airdos::AddPeopleCommand(&app);
+  airdos::AddCurveCommand(&app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -12,6 +12,7 @@ namespace airdos {
 
 void AddTrajectoryCommand(CLI::App* app);
 void AddPeopleCommand(CLI::App* app);
+void AddCurveCommand(CLI::App* app);
 
 /// Writes a file of indented JSON. Throws InputError where it cannot be written.
 void WriteJson(const nlohmann::json& json, const std::string& path);
