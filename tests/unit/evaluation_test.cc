@@ -171,6 +171,25 @@ TEST(TrajectoryErrorTest, DriftOfAWrongScale) {
   EXPECT_EQ(EndPointDriftPercent({{truth[0], truth[0]}, {truth[0], truth[0]}}), 0);
 }
 
+TEST(TrajectoryErrorTest, CountsLostFrames) {
+  // Straight ahead, 1 m a frame; of the estimate's steps one is 11 cm too long, one 9 cm, one turns
+  // 2.1 deg too far, one 1.9 deg; two of 8 frames have no pose.
+  std::vector<TrajectoryPose> truth(6);
+  std::vector<TrajectoryPose> estimate(6);
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    truth[i].position_m = {0, 0, static_cast<double>(i)};
+    const double too_long_m = i == 1 ? 0.11 : i == 2 ? 0.09 : 0;
+    const double too_far_deg = i == 4 ? 2.1 : i == 5 ? 1.9 : 0;
+    estimate[i].position_m = estimate[i - 1].position_m +
+                             estimate[i - 1].rotation * Eigen::Vector3d(0, 0, 1 + too_long_m);
+    estimate[i].rotation =
+        estimate[i - 1].rotation * Rotation(too_far_deg * M_PI / 180, Eigen::Vector3d::UnitY());
+  }
+  EXPECT_EQ(CountLostFrames({estimate, truth}, 6), 2u);
+  EXPECT_EQ(CountLostFrames({estimate, truth}, 8), 4u);
+  EXPECT_EQ(CountLostFrames({truth, truth}, 6), 0u);
+}
+
 TEST(AxesTest, ConvertsWorldAndBody) {
   const TrajectoryPose pose = Bend(20)[13];
   const TrajectoryPose back = ToOptical(InNed(pose), GroundTruthAxes::kNed);
