@@ -14,7 +14,6 @@ struct PeopleArguments {
   std::string joints;
   std::string estimate;
   std::string ground_truth;
-  double max_distance_m = 0.5;
   std::string json;
 };
 
@@ -24,8 +23,7 @@ void RunPeople(const PeopleArguments& arguments) {
       Associate(ReadTrajectory(arguments.estimate), ReadTrajectory(arguments.ground_truth),
                 kMaxTimeDifferenceS);
   const PeopleReport report =
-      EvaluatePeople(ReadPeople(arguments.people), ReadTruePeople(arguments.joints), cameras,
-                     arguments.max_distance_m);
+      EvaluatePeople(ReadPeople(arguments.people), ReadTruePeople(arguments.joints), cameras);
   std::fputs(ToTable(report).c_str(), stdout);
   if (!arguments.json.empty()) WriteJson(ToJson(report), arguments.json);
 }
@@ -34,7 +32,8 @@ void RunPeople(const PeopleArguments& arguments) {
 
 void AddPeopleCommand(CLI::App* app) {
   const auto arguments = std::make_shared<PeopleArguments>();
-  CLI::App* const command = app->add_subcommand("people", "Errors of people's joints, in 3-D");
+  CLI::App* const command =
+      app->add_subcommand("people", "Errors of people: joints, identities, lengths of segments");
   command->add_option("--people", arguments->people, "people.jsonl of a map")->required();
   command->add_option("--joints", arguments->joints, "true joints: joints_gt.json, or its .gz")
       ->required();
@@ -44,8 +43,6 @@ void AddPeopleCommand(CLI::App* app) {
       ->add_option("--ground-truth", arguments->ground_truth,
                    "TUM file of the true camera, optical axes, in the world of the true joints")
       ->required();
-  command->add_option("--max-distance", arguments->max_distance_m, "of a match, mean of joints (m)")
-      ->capture_default_str();
   command->add_option("--json", arguments->json, "file to write all figures to");
   command->callback([arguments] { RunPeople(*arguments); });
 }

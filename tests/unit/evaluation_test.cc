@@ -13,7 +13,6 @@
 #include "common/evaluation/alignment.h"
 #include "common/evaluation/chart.h"
 #include "common/evaluation/ground_truth_axes.h"
-#include "common/evaluation/people_report.h"
 #include "common/evaluation/statistics.h"
 #include "common/evaluation/trajectory.h"
 #include "common/evaluation/trajectory_error.h"
@@ -268,46 +267,6 @@ TEST(EvaluateTrajectoryTest, RefusesWhatCannotBeCompared) {
   for (TrajectoryPose& pose : still.poses) pose = At(pose.time_s);
   EXPECT_NE(MessageOf([&] { EvaluateTrajectory(still, truth, {}); }).find("--gt-axes"),
             std::string::npos);
-}
-
-Joints OneJoint(const Eigen::Vector3d& place) {
-  Joints joints;
-  joints[1] = place;
-  return joints;
-}
-
-TEST(PeopleTest, ErrorsDoNotCountTheCamerasPath) {
-  // Two people 2 m apart; the camera's estimate is 10 m off, the joints 3 cm (measured: 6 cm).
-  MatchedTrajectories cameras;
-  std::vector<TruePeople> truth;
-  std::vector<PersonState> estimate;
-  for (int k = 0; k < 4; ++k) {
-    cameras.estimate.push_back(At(0.1 * k));
-    cameras.estimate.back().rotation = Rotation(0.5, Eigen::Vector3d::UnitY());
-    cameras.ground_truth.push_back(At(0.1 * k));
-    cameras.ground_truth.back().position_m = {10, 0, 0};
-    TruePeople frame = {0.1 * k, {}};
-    for (const int person : {7, 8}) {
-      const Eigen::Vector3d p_C(2.0 * (person - 7), 0, 5);
-      frame.people[person] = OneJoint(p_C + Eigen::Vector3d(10, 0, 0));
-      const Eigen::Vector3d p_W = cameras.estimate.back().rotation * p_C;
-      // From frame 2 on person 8 has another track.
-      const std::int64_t track = person == 7 ? 70 : (k < 2 ? 80 : 81);
-      estimate.push_back({0.1 * k, track, OneJoint(p_W + Eigen::Vector3d(0, 0.03, 0)),
-                          OneJoint(p_W + Eigen::Vector3d(0, 0.06, 0))});
-    }
-    truth.push_back(frame);
-  }
-  estimate.push_back({0.1, 99, OneJoint({50, 0, 0}), OneJoint({50, 0, 0})});  // nobody
-  const PeopleReport report = EvaluatePeople(estimate, truth, cameras, 0.5);
-  EXPECT_EQ(report.num_states, 9u);
-  EXPECT_EQ(report.num_matched, 8u);
-  EXPECT_EQ(report.num_tracks, 4u);
-  EXPECT_EQ(report.num_people, 2u);
-  EXPECT_EQ(report.num_identity_switches, 1u);
-  EXPECT_EQ(report.joint_error_m.count, 8u);
-  EXPECT_NEAR(report.joint_error_m.mean, 0.03, 1e-12);
-  EXPECT_NEAR(report.measured_error_m.max, 0.06, 1e-12);
 }
 
 class TrajectoryFileTest : public ::testing::Test {
