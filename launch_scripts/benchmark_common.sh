@@ -7,6 +7,15 @@ num_cores() { nproc 2> /dev/null || echo 1; }
 # need_number OPTION VALUE: a whole number above zero.
 need_number() { [[ $2 =~ ^[1-9][0-9]*$ ]] || die_usage "$1: not a whole number above 0: '$2'"; }
 
+# need_modes LIST: what people may be used for.
+need_modes() {
+  local mode
+  [[ $1 =~ [^[:space:]] ]] || die_usage "--modes: the list is empty"
+  for mode in $1; do
+    [[ $mode =~ ^(off|mask_only|on)$ ]] || die_usage "--modes: '$mode' is none of off, mask_only, on"
+  done
+}
+
 # need_benchmark_programs: what every benchmark runs.
 need_benchmark_programs() {
   need_program airdos-replay
