@@ -11,6 +11,8 @@ namespace {
 constexpr std::array<int, 6> kBodyJoints = {kNeck,     kRightShoulder, kLeftShoulder,
                                             kRightHip, kLeftHip,       kNose};
 
+constexpr double kLeastLengthSigmaM = 0.01;
+
 using Pair = std::pair<BundleProblem::JointState*, BundleProblem::JointState*>;
 
 /// The joints of `wanted` (-1: none) that were seen before and after.
@@ -101,7 +103,9 @@ void BundleGraph::AddRigidity(const std::vector<Sighting>& sightings, BundleProb
     people_blocks_.push_back(&*length_m);
     if (num_factors > 0 && human->known_length_m[segment]) {
       ceres_problem_.AddResidualBlock(
-          new LengthPriorFactor(*human->known_length_m[segment], options_.segment_length_sigma_m),
+          new LengthPriorFactor(
+              *human->known_length_m[segment],
+              std::hypot(human->known_length_sigma_m[segment], kLeastLengthSigmaM)),
           nullptr, &*length_m);
     }
   }

@@ -10,6 +10,7 @@
 #include "common/human/skeleton.h"
 #include "common/optimization/bundle_problem.h"
 #include "common/optimization/frame_input.h"
+#include "common/optimization/segment_lengths.h"
 
 namespace airdos {
 
@@ -75,12 +76,12 @@ class HumanTracks {
   };
   struct Person {
     std::map<FrameId, std::map<int, Joint>> sightings;  // of the frames in memory
-    std::array<std::optional<double>, kNumSegments> length_m;
-    int num_sightings = 0;
+    SegmentLengths lengths;
     FrameId last_seen;
   };
 
-  std::optional<double> MeanLength(const Person& person, std::size_t segment) const;
+  static std::map<int, MeasuredJoint> MeasuredJoints(const StereoCamera& camera,
+                                                     const std::map<int, Joint>& joints);
 
   HumanTracksOptions options_;
   std::vector<FrameId> frames_;
