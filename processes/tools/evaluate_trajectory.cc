@@ -31,8 +31,7 @@ void RunTrajectory(const TrajectoryArguments& arguments) {
   EvaluationOptions options;
   options.max_time_difference_s = arguments.max_difference_s;
   options.num_frames = arguments.num_frames;
-  if (arguments.axes == "ned") options.axes = GroundTruthAxes::kNed;
-  if (arguments.axes == "optical") options.axes = GroundTruthAxes::kOptical;
+  if (arguments.axes != "auto") options.axes = GroundTruthAxes::Parse(arguments.axes);
   const TrajectoryReport report = EvaluateTrajectory(estimate, ground_truth, options);
   std::fputs(ToTable(report).c_str(), stdout);
   if (!arguments.json.empty()) {
@@ -57,9 +56,14 @@ void AddTrajectoryCommand(CLI::App* app) {
   command->add_option("--times", arguments->times,
                       "times (s) of the rows of a KITTI file, one a line, to compare it with TUM");
   command
-      ->add_option("--gt-axes", arguments->axes,
-                   "axes of the ground truth; auto compares motions with the estimate's")
-      ->check(CLI::IsMember({"auto", "optical", "ned"}))
+      ->add_option(
+          "--gt-axes", arguments->axes,
+          "axes of the ground truth: optical, ned, where right, down and forward lie (such "
+          "as y,-z,x), or auto: compares motions with the estimate's")
+      ->check([](const std::string& text) -> std::string {
+        if (text == "auto" || GroundTruthAxes::Parse(text)) return "";
+        return "'" + text + "' is none of auto, optical, ned, three axes such as y,-z,x";
+      })
       ->capture_default_str();
   command->add_option("--max-diff", arguments->max_difference_s, "largest time difference (s)")
       ->check(CLI::NonNegativeNumber)
