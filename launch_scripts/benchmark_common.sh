@@ -35,20 +35,25 @@ need_sequences() {
   done
 }
 
-# replay_and_evaluate NAME FOLDER RUN REPLAY_OPTION…: runs all processes on a sequence, leaves trajectories, the map,
-# timing.json and evaluation.json in the folder RUN. EVALUATE_OPTIONS (an array) go to airdos-evaluate. NAME is said
-# where it fails.
-replay_and_evaluate() {
+# replay_sequence NAME FOLDER RUN REPLAY_OPTION…: runs all processes on a sequence, leaves trajectories, the map and
+# timing.json in the folder RUN. NAME is said where it fails.
+replay_sequence() {
   local name=$1 folder=$2 run=$3
   shift 3
   mkdir -p "$run"
+  rm -f "$run/evaluation.json" # of an earlier run
   "$AIRDOS_BIN/airdos-replay" "$folder" --run-dir "$run" --timing "$run/timing.json" --no-progress "$@" \
     > "$run/replay.log" 2>&1 || die "$name: airdos-replay failed (log: $run/replay.log)"
+}
+
+# evaluate_run NAME RUN EVALUATE_OPTION…: leaves evaluation.json, .txt and trajectory.png beside the trajectory.
+evaluate_run() {
+  local name=$1 run=$2
+  shift 2
   "$AIRDOS_BIN/airdos-evaluate" trajectory --estimate "$run/trajectory.tum" --ground-truth "$run/ground_truth.tum" \
-    --json "$run/evaluation.json" --plot "$run/trajectory.png" "${EVALUATE_OPTIONS[@]}" \
+    --json "$run/evaluation.json" --plot "$run/trajectory.png" "$@" \
     > "$run/evaluation.txt" 2>&1 || die "$name: airdos-evaluate failed (log: $run/evaluation.txt)"
 }
-EVALUATE_OPTIONS=()
 
 # number_of PATH FILE: a number of one of our JSON files.
 number_of() { jq -r ".$1" "$2"; }
@@ -72,12 +77,17 @@ start_job() {
   running_jobs=$((running_jobs + 1))
 }
 
-# finish_jobs: waits for all; ends the script if one failed (which has said why).
-finish_jobs() {
+# wait_for_jobs: until all have ended; failed_jobs counts those that failed.
+wait_for_jobs() {
   while ((running_jobs > 0)); do
     wait -n || failed_jobs=$((failed_jobs + 1))
     running_jobs=$((running_jobs - 1))
   done
+}
+
+# finish_jobs: the same; ends the script if one failed (which has said why).
+finish_jobs() {
+  wait_for_jobs
   ((failed_jobs == 0)) || die "$failed_jobs of the runs failed"
 }
 

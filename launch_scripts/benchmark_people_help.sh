@@ -56,13 +56,14 @@ run_of() { echo "$run_dir/$(basename "$1")/$2/$3"; }
 # run_one FOLDER CAP MODE: leaves the row of runs.jsonl in the run's folder. With few features the estimate may be too bad
 # to tell the axes of the ground truth: they come from the uncapped run.
 run_one() {
-  local folder=$1 cap=$2 mode=$3 name run reference options=("${replay_options[@]}")
+  local folder=$1 cap=$2 mode=$3 name run reference axes=auto options=("${replay_options[@]}")
   name=$(basename "$folder")
   run=$(run_of "$folder" "$cap" "$mode")
   reference=$(run_of "$folder" uncapped mask_only)
   [[ $cap == uncapped ]] || options+=(--set "frontend:tracking.max_observations=$cap")
-  [[ $run == "$reference" ]] || EVALUATE_OPTIONS=(--gt-axes "$(axes_of "$reference/evaluation.json")")
-  replay_and_evaluate "$name, $cap, $mode" "$folder" "$run" --people "$mode" "${options[@]}"
+  [[ $run == "$reference" ]] || axes=$(axes_of "$reference/evaluation.json")
+  replay_sequence "$name, $cap, $mode" "$folder" "$run" --people "$mode" "${options[@]}"
+  evaluate_run "$name, $cap, $mode" "$run" --gt-axes "$axes"
   jq -c --arg sequence "$name" --arg mode "$mode" --arg cap "$cap" '{
       sequence: $sequence, mode: $mode,
       max_observations: (if $cap == "uncapped" then null else $cap | tonumber end),

@@ -66,13 +66,14 @@ run_of() { echo "$run_dir/$(basename "$1")/$2/$3"; }
 # run_one FOLDER MODE VARIANT: leaves the row of runs.jsonl in the run's folder. A failing estimate may be too bad to tell
 # the axes of the ground truth: they come from the plain run with masks.
 run_one() {
-  local folder=$1 mode=$2 variant=$3 name run reference options=("${replay_options[@]}")
+  local folder=$1 mode=$2 variant=$3 name run reference axes=auto options=("${replay_options[@]}")
   name=$(basename "$folder")
   run=$(run_of "$folder" "$mode" "$variant")
   reference=$(run_of "$folder" mask_only plain)
   [[ -z ${setting_of[$variant]:-} ]] || options+=(--set "frontend:${setting_of[$variant]}")
-  [[ $run == "$reference" ]] || EVALUATE_OPTIONS=(--gt-axes "$(axes_of "$reference/evaluation.json")")
-  replay_and_evaluate "$name, $mode, $variant" "$folder" "$run" --people "$mode" "${options[@]}"
+  [[ $run == "$reference" ]] || axes=$(axes_of "$reference/evaluation.json")
+  replay_sequence "$name, $mode, $variant" "$folder" "$run" --people "$mode" "${options[@]}"
+  evaluate_run "$name, $mode, $variant" "$run" --gt-axes "$axes"
   jq -c --arg sequence "$name" --arg mode "$mode" --arg variant "$variant" '{
       sequence: $sequence, mode: $mode, variant: $variant, frames, frames_lost, poses_matched,
       ate_m: .ate_se3_m.rmse, rpe_rmse_m: .rpe_translation_per_frame_m.rmse

@@ -49,7 +49,8 @@ run_one() {
   local folder=$1 mode=$2 name run evaluation timing
   name=$(basename "$folder")
   run=$run_dir/$name/$mode
-  replay_and_evaluate "$name, $mode" "$folder" "$run" --people "$mode" --out "$run/output.lcm" "${replay_options[@]}"
+  replay_sequence "$name, $mode" "$folder" "$run" --people "$mode" --out "$run/output.lcm" "${replay_options[@]}"
+  evaluate_run "$name, $mode" "$run"
   evaluation=$run/evaluation.json timing=$run/timing.json
   printf '| %s | %s | %s / %s | %.4f | %.4f | %.4f | %.2f | %.0f / %.0f / %.0f |\n' "$name" "$mode" \
     "$(number_of poses_matched "$evaluation")" "$(number_of poses_ground_truth "$evaluation")" \
