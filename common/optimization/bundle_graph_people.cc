@@ -11,8 +11,6 @@ namespace {
 constexpr std::array<int, 6> kBodyJoints = {kNeck,     kRightShoulder, kLeftShoulder,
                                             kRightHip, kLeftHip,       kNose};
 
-constexpr double kLeastLengthSigmaM = 0.01;
-
 using Pair = std::pair<BundleProblem::JointState*, BundleProblem::JointState*>;
 
 /// The joints of `wanted` (-1: none) that were seen before and after.
@@ -105,7 +103,7 @@ void BundleGraph::AddRigidity(const std::vector<Sighting>& sightings, BundleProb
       ceres_problem_.AddResidualBlock(
           new LengthPriorFactor(
               *human->known_length_m[segment],
-              std::hypot(human->known_length_sigma_m[segment], kLeastLengthSigmaM)),
+              std::hypot(human->known_length_sigma_m[segment], options_.segment_length_sigma_m)),
           nullptr, &*length_m);
     }
   }

@@ -71,7 +71,7 @@ struct BundleProblem {
     std::vector<PartMotion> motions;  ///< result, sorted by (frame, part)
     std::array<std::optional<double>, kNumSegments>
         segment_length_m;  ///< start value, then result; factors only where given
-    /// Lengths known from all of the track, and how well.
+    /// Lengths known from the track before this window, if it is older, and how well.
     std::array<std::optional<double>, kNumSegments> known_length_m;
     std::array<double, kNumSegments> known_length_sigma_m{};
     int num_rigidity_eliminated = 0;  ///< results

@@ -23,7 +23,12 @@ void HumanTracks::AddFrame(const StereoCamera& camera, const FrameInput& input) 
     person.last_seen = input.id;
   }
   if (static_cast<int>(frames_.size()) > options_.window_frames) {
-    for (auto& [id, person] : people_) person.sightings.erase(frames_.front());
+    for (auto& [id, person] : people_) {
+      const auto oldest = person.sightings.find(frames_.front());
+      if (oldest == person.sightings.end()) continue;
+      person.lengths_before_window.Add(MeasuredJoints(camera, oldest->second));
+      person.sightings.erase(oldest);
+    }
     times_s_.erase(frames_.front());
     frames_.erase(frames_.begin());
   }
@@ -64,8 +69,13 @@ void HumanTracks::AddTo(BundleProblem* problem) const {
     for (std::size_t segment = 0; segment < kNumSegments; ++segment) {
       const std::optional<SegmentLengths::Length> length = person.lengths.Find(segment);
       if (!length) continue;
-      human.segment_length_m[segment] = human.known_length_m[segment] = length->mean_m;
-      human.known_length_sigma_m[segment] = length->sigma_m;
+      human.segment_length_m[segment] = length->mean_m;
+      // What the window's frames say about a length, they say to the solver themselves.
+      const std::optional<SegmentLengths::Length> known =
+          person.lengths_before_window.Find(segment);
+      if (!known) continue;
+      human.known_length_m[segment] = known->mean_m;
+      human.known_length_sigma_m[segment] = known->sigma_m;
     }
     problem->humans.push_back(std::move(human));
   }

@@ -24,12 +24,15 @@ struct MeasuredJoint {
 /// has a distribution over its length s, on a grid of ratios to the typical length, that every
 /// frame multiplies with the likelihood of what it measured (a = along the ray, l = across it):
 ///
-///   p(a, l | s) = 1/2 integral over theta = 0..pi of N(a; s cos theta, sigma_a^2)
-///                 N(l; s sin theta, sigma_l^2) sin theta
+///   p(a, l | s) = integral over theta = 0..pi of q(theta) N(a; s cos theta, sigma_a^2)
+///                 N(l; s sin theta, sigma_l^2)
 ///
-/// that is, a segment may point anywhere. A share of outliers keeps a false joint from deciding,
-/// and the power kIndependence stands for errors that last over frames. The start is a log-normal
-/// around the typical length, wide enough for anybody. Left and right are as long as each other.
+/// where q is the density of the angle between segment and ray, sin^n(theta): n = 1 for any
+/// direction, more for what is mostly upright. How much one person's segment swings decides how
+/// much longer than it looks it must be, so n is found out along with s. A share of outliers keeps
+/// a false joint from deciding, and the power kIndependence stands for errors that last over
+/// frames. The start is a log-normal around the typical length, wide enough for anybody. Left and
+/// right are as long as each other.
 class SegmentLengths {
  public:
   /// Adds one frame's joints, by Joint.
@@ -42,18 +45,19 @@ class SegmentLengths {
   /// Nothing where no frame has shown both ends (of this segment or its mirror image).
   std::optional<Length> Find(std::size_t segment) const;
 
-  static constexpr int kGridSize = 48;
+  static constexpr std::size_t kGridSize = 36;
+  static constexpr std::size_t kNumSpreads = 3;
   /// Length at a place of the grid, as a ratio to the typical one: 0.45 to 1.7, evenly in
   /// logarithm.
-  static double Ratio(int place);
+  static double Ratio(std::size_t place);
 
  private:
   struct Belief {
     int num_frames = 0;
-    std::array<double, kGridSize> log_likelihood{};
+    std::array<std::array<double, kGridSize>, kNumSpreads> log_likelihood{};
   };
   void AddSegment(std::size_t segment, const MeasuredJoint& a, const MeasuredJoint& b,
-                  double depth_m);
+                  double inverse_depth);
 
   std::array<Belief, kNumSegments> beliefs_;  // of the mirror images' first ones
 };
