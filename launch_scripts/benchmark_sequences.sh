@@ -13,6 +13,8 @@
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+# shellcheck source=launch_scripts/benchmark_common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
 modes='off mask_only on' run_dir=$AIRDOS_RUNS/benchmark
 folders=() replay_options=()
@@ -38,28 +40,17 @@ while (($# > 0)); do
   esac
   shift
 done
-((${#folders[@]} > 0)) || die_usage "no sequence given (see --help)"
-for folder in "${folders[@]}"; do [[ -d $folder ]] || die_usage "no folder '$folder'"; done
-need_program airdos-replay
-need_program airdos-evaluate
-
-command -v jq > /dev/null || die "jq is missing: apt-get install jq"
-
-# number_of PATH FILE: a number of one of our JSON files.
-number_of() { jq -r ".$1" "$2"; }
+need_modes "$modes"
+need_sequences "${folders[@]}"
+need_benchmark_programs
 
 # run_one FOLDER MODE: one row of the table.
 run_one() {
   local folder=$1 mode=$2 name run evaluation timing
   name=$(basename "$folder")
   run=$run_dir/$name/$mode
-  mkdir -p "$run"
-  "$AIRDOS_BIN/airdos-replay" "$folder" --people "$mode" --out "$run/output.lcm" --run-dir "$run" \
-    --timing "$run/timing.json" --no-progress "${replay_options[@]}" > "$run/replay.log" 2>&1 ||
-    die "$name, $mode: airdos-replay failed (log: $run/replay.log)"
-  "$AIRDOS_BIN/airdos-evaluate" trajectory --estimate "$run/trajectory.tum" \
-    --ground-truth "$run/ground_truth.tum" --json "$run/evaluation.json" --plot "$run/trajectory.png" \
-    > "$run/evaluation.txt" 2>&1 || die "$name, $mode: airdos-evaluate failed (log: $run/evaluation.txt)"
+  replay_sequence "$name, $mode" "$folder" "$run" --people "$mode" --out "$run/output.lcm" "${replay_options[@]}"
+  evaluate_run "$name, $mode" "$run"
   evaluation=$run/evaluation.json timing=$run/timing.json
   printf '| %s | %s | %s / %s | %.4f | %.4f | %.4f | %.2f | %.0f / %.0f / %.0f |\n' "$name" "$mode" \
     "$(number_of poses_matched "$evaluation")" "$(number_of poses_ground_truth "$evaluation")" \

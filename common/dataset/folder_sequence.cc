@@ -32,11 +32,15 @@ void CheckSameNames(const FolderSequence::Contents& contents) {
 }  // namespace
 
 FolderSequence::FolderSequence(Contents contents)
-    : contents_(std::move(contents)),
-      has_people_(fs::is_directory(contents_.folder + "/alphapose_0")) {
+    : contents_(std::move(contents)), has_people_(fs::is_directory(PeopleFolder("alphapose_0"))) {
   AIRDOS_CHECK(contents_.left_names.size() == contents_.right_names.size());
   AIRDOS_CHECK(contents_.left_names.size() == contents_.utimes.size());
   contents_.ground_truth.resize(contents_.left_names.size());
+}
+
+std::string FolderSequence::PeopleFolder(const std::string& name) const {
+  const std::string folder = contents_.folder + "/" + name;
+  return contents_.people_subfolder.empty() ? folder : folder + "/" + contents_.people_subfolder;
 }
 
 SequenceFrame FolderSequence::Load(std::size_t index) const {
@@ -49,10 +53,10 @@ SequenceFrame FolderSequence::Load(std::size_t index) const {
       ReadImageFile(folder + "/" + contents_.left_folder + "/" + contents_.left_names[index]);
   frame.right_image_file =
       ReadImageFile(folder + "/" + contents_.right_folder + "/" + contents_.right_names[index]);
-  const std::string mask = folder + "/rcnnseg_image_0/" + stem + ".png";
+  const std::string mask = PeopleFolder("rcnnseg_image_0") + "/" + stem + ".png";
   if (fs::exists(mask)) frame.person_mask_file = ReadImageFile(mask);
-  frame.keypoints_left = ReadKeypoints(folder + "/alphapose_0/" + stem + ".txt");
-  frame.keypoints_right = ReadKeypoints(folder + "/alphapose_1/" + stem + ".txt");
+  frame.keypoints_left = ReadKeypoints(PeopleFolder("alphapose_0") + "/" + stem + ".txt");
+  frame.keypoints_right = ReadKeypoints(PeopleFolder("alphapose_1") + "/" + stem + ".txt");
   frame.ground_truth = contents_.ground_truth[index];
   return frame;
 }

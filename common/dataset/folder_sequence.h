@@ -16,6 +16,9 @@ class FolderSequence : public StereoSequence {
     std::string folder;
     std::string left_folder;   ///< name inside `folder`
     std::string right_folder;  ///< name inside `folder`
+    /// Of alphapose_0, alphapose_1 and rcnnseg_image_0 in `folder`, where the people of this
+    /// sequence are; empty: directly there.
+    std::string people_subfolder;
     StereoCamera camera;
     std::vector<std::string> left_names;
     std::vector<std::string> right_names;  ///< of the same images
@@ -35,6 +38,8 @@ class FolderSequence : public StereoSequence {
   std::vector<std::string> notes() const override { return contents_.notes; }
 
  private:
+  std::string PeopleFolder(const std::string& name) const;
+
   Contents contents_;
   bool has_people_;
 };

@@ -1,9 +1,9 @@
 #include "common/dataset/kitti_sequence.h"
 
-#include <cmath>
 #include <filesystem>
 
 #include "common/dataset/folder_sequence.h"
+#include "common/dataset/kitti_calibration.h"
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
 #include "common/util/text_file.h"
@@ -13,25 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A 3 x 4 projection matrix, row major, and where it stands.
-struct Projection {
-  int line = 0;
-  std::vector<double> p;
-};
-
-Projection ParseProjection(const std::string& path, const TextLine& line, std::size_t first_word) {
-  Projection projection = {line.number, ParseNumbers(path, line, first_word)};
-  if (projection.p.size() != 12) {
-    throw InputError(path + ":" + std::to_string(line.number) +
-                     ": must hold 12 numbers (3 x 4 projection), holds " +
-                     std::to_string(projection.p.size()));
-  }
-  return projection;
-}
-
-std::pair<Projection, Projection> ReadProjections(const std::string& path) {
-  std::optional<Projection> left;
-  std::optional<Projection> right;
+std::pair<KittiProjection, KittiProjection> ReadProjections(const std::string& path) {
+  std::optional<KittiProjection> left;
+  std::optional<KittiProjection> right;
   for (const TextLine& line : ReadTextLines(path)) {
     const bool is_named = line.words[0].back() == ':';
     if (is_named && line.words[0] == "P0:") left = ParseProjection(path, line, 1);
@@ -49,31 +33,6 @@ std::pair<Projection, Projection> ReadProjections(const std::string& path) {
   return {*left, *right};
 }
 
-StereoCamera ReadCamera(const std::string& path, std::pair<int, int> size) {
-  const auto [left, right] = ReadProjections(path);
-  const std::string where = path + ":" + std::to_string(right.line);
-  for (const std::size_t i : {0, 2, 5, 6}) {
-    if (std::abs(left.p[i] - right.p[i]) > 1e-6 * std::abs(left.p[i])) {
-      throw InputError(where + ": number " + std::to_string(i + 1) + " differs from " +
-                       std::to_string(left.p[i]) + " of the left camera: not a rectified pair");
-    }
-  }
-  StereoCamera camera;
-  std::tie(camera.width, camera.height) = size;
-  camera.fx_px = left.p[0];
-  camera.cx_px = left.p[2];
-  camera.fy_px = left.p[5];
-  camera.cy_px = left.p[6];
-  camera.baseline_m = (left.p[3] - right.p[3]) / left.p[0];
-  if (!camera.IsValid()) {
-    throw InputError(where + ": no pinhole pair for images of " + std::to_string(camera.width) +
-                     " x " + std::to_string(camera.height) + " px (focal length " +
-                     std::to_string(camera.fx_px) + " px, baseline " +
-                     std::to_string(camera.baseline_m) + " m)");
-  }
-  return camera;
-}
-
 }  // namespace
 
 std::unique_ptr<StereoSequence> OpenKittiSequence(const std::string& folder) {
@@ -83,9 +42,11 @@ std::unique_ptr<StereoSequence> OpenKittiSequence(const std::string& folder) {
   contents.left_folder = has_letters ? "image_l" : "image_0";
   contents.right_folder = has_letters ? "image_r" : "image_1";
   FillImagesAndTimes(&contents);
-  contents.camera =
-      ReadCamera(folder + "/calib.txt",
-                 ReadImageSize(folder + "/" + contents.left_folder + "/" + contents.left_names[0]));
+  const std::string calibration_path = folder + "/calib.txt";
+  const auto [left, right] = ReadProjections(calibration_path);
+  contents.camera = MakeStereoCamera(
+      calibration_path, left, right,
+      ReadImageSize(folder + "/" + contents.left_folder + "/" + contents.left_names[0]));
 
   const std::string poses_path = folder + "/poses.txt";
   if (fs::exists(poses_path)) {

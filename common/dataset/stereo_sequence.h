@@ -54,9 +54,9 @@ class StereoSequence {
   virtual std::vector<std::string> notes() const { return {}; }
 };
 
-/// Opens a folder and finds out its layout: KITTI odometry where there is a calib.txt
-/// (kitti_sequence.h), else TartanAir-Shibuya where there are image_0 and image_1
-/// (shibuya_sequence.h).
+/// Opens a folder and finds out its layout: KITTI tracking where the folder is image_02/NNNN
+/// (kitti_tracking_sequence.h), KITTI odometry where there is a calib.txt (kitti_sequence.h), else
+/// TartanAir-Shibuya where there are image_0 and image_1 (shibuya_sequence.h).
 std::unique_ptr<StereoSequence> OpenStereoSequence(const std::string& folder);
 
 }  // namespace airdos

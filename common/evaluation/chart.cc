@@ -110,23 +110,31 @@ Frame MakeFrame(const Chart& chart, const cv::Rect& area_px) {
   return frame;
 }
 
+/// The chart's own ticks where it has any (those in the range), else round numbers.
+std::vector<NamedTick> TicksOf(const std::vector<NamedTick>& named, const Range& range) {
+  constexpr int kAboutSoMany = 7;
+  std::vector<NamedTick> ticks;
+  for (const NamedTick& tick : named) {
+    if (tick.value >= range.low && tick.value <= range.high) ticks.push_back(tick);
+  }
+  if (!named.empty()) return ticks;
+  const std::vector<double> values = RoundTicks(range.low, range.high, kAboutSoMany);
+  const double step = values.size() > 1 ? values[1] - values[0] : 1;
+  for (const double value : values) ticks.push_back({value, TickText(value, step)});
+  return ticks;
+}
+
 void DrawAxes(const Chart& chart, const Frame& frame, cv::Mat* picture) {
   const cv::Rect& area = frame.area;
-  const std::vector<double> x_ticks = RoundTicks(frame.x.low, frame.x.high, 7);
-  const double x_step = x_ticks.size() > 1 ? x_ticks[1] - x_ticks[0] : 1;
-  for (const double value : x_ticks) {
-    const int column = frame.ToPixel({value, 0}).x;
+  for (const NamedTick& tick : TicksOf(chart.x_ticks, frame.x)) {
+    const int column = frame.ToPixel({tick.value, 0}).x;
     cv::line(*picture, {column, area.y}, {column, area.br().y}, kGrid);
-    const std::string text = TickText(value, x_step);
-    DrawText(picture, text, {column - TextSize(text).width / 2, area.br().y + 22});
+    DrawText(picture, tick.name, {column - TextSize(tick.name).width / 2, area.br().y + 22});
   }
-  const std::vector<double> y_ticks = RoundTicks(frame.y.low, frame.y.high, 7);
-  const double y_step = y_ticks.size() > 1 ? y_ticks[1] - y_ticks[0] : 1;
-  for (const double value : y_ticks) {
-    const int row = frame.ToPixel({0, value}).y;
+  for (const NamedTick& tick : TicksOf(chart.y_ticks, frame.y)) {
+    const int row = frame.ToPixel({0, tick.value}).y;
     cv::line(*picture, {area.x, row}, {area.br().x, row}, kGrid);
-    const std::string text = TickText(value, y_step);
-    DrawText(picture, text, {area.x - TextSize(text).width - 8, row + 5});
+    DrawText(picture, tick.name, {area.x - TextSize(tick.name).width - 8, row + 5});
   }
   cv::rectangle(*picture, area, kInk);
   DrawText(picture, chart.title, {area.x, area.y - 16}, 0.65);

@@ -16,6 +16,12 @@ struct ChartSeries {
   bool is_dots = false;             ///< dots of thickness_px instead of a line through the points
 };
 
+/// A place on an axis that has a name of its own instead of a round number.
+struct NamedTick {
+  double value = 0;
+  std::string name;
+};
+
 /// A chart with ticks at round numbers, a grid and a legend (where more than one series has a
 /// name).
 struct Chart {
@@ -24,6 +30,8 @@ struct Chart {
   std::string y_label;
   bool equal_scale = false;  ///< one unit of x as long as one of y
   bool starts_at_zero = false;
+  std::vector<NamedTick> x_ticks;  ///< instead of round numbers where there are any
+  std::vector<NamedTick> y_ticks;
   std::vector<ChartSeries> series;
 };
 

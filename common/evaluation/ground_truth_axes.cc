@@ -1,7 +1,10 @@
 #include "common/evaluation/ground_truth_axes.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 
@@ -12,61 +15,122 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
 constexpr double kMinRotationRmsDeg = 0.5;
+constexpr double kMinTranslationRmsM = 0.05;
 constexpr double kMinAgreement = 0.7;
-constexpr double kMinLead = 0.1;
-
-/// Sums for the cosine between two series of vectors.
-class Agreement {
- public:
-  void Add(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    product_ += a.dot(b);
-    square_a_ += a.squaredNorm();
-    square_b_ += b.squaredNorm();
-  }
-  double value() const {
-    const double norm = std::sqrt(square_a_ * square_b_);
-    return norm > 0 ? product_ / norm : 0;
-  }
-
- private:
-  double product_ = 0;
-  double square_a_ = 0;
-  double square_b_ = 0;
-};
+constexpr double kLeastMargin = 0.01;
+constexpr double kMostMargin = 0.1;
+constexpr std::size_t kLongestStride = 10;
 
 Eigen::Vector3d RotationVector(const TrajectoryPose& pose) {
   return LogSo3(Eigen::Quaterniond(pose.rotation).normalized());
 }
 
-AxesAgreement Compare(const MatchedTrajectories& matched, GroundTruthAxes axes,
-                      std::size_t stride) {
-  Agreement rotation;
-  Agreement translation;
-  for (std::size_t i = 0; i + stride < matched.estimate.size(); ++i) {
-    const TrajectoryPose estimate = RelativePose(matched.estimate[i], matched.estimate[i + stride]);
-    const TrajectoryPose truth =
-        ToOptical(RelativePose(matched.ground_truth[i], matched.ground_truth[i + stride]), axes);
-    rotation.Add(RotationVector(estimate), RotationVector(truth));
-    translation.Add(estimate.position_m, truth.position_m);
+/// Motions in body axes, one a column: rotation vectors and displacements.
+struct Motions {
+  Eigen::Matrix3Xd rotation;
+  Eigen::Matrix3Xd translation;
+};
+
+Motions MotionsOf(const std::vector<TrajectoryPose>& poses, std::size_t stride) {
+  const std::size_t num = poses.size() > stride ? poses.size() - stride : 0;
+  Motions motions = {Eigen::Matrix3Xd(3, num), Eigen::Matrix3Xd(3, num)};
+  for (std::size_t i = 0; i < num; ++i) {
+    const TrajectoryPose motion = RelativePose(poses[i], poses[i + stride]);
+    motions.rotation.col(static_cast<Eigen::Index>(i)) = RotationVector(motion);
+    motions.translation.col(static_cast<Eigen::Index>(i)) = motion.position_m;
   }
-  return {rotation.value(), translation.value()};
+  return motions;
 }
 
-double RotationRmsDeg(const std::vector<TrajectoryPose>& poses, std::size_t stride) {
+double Rms(const Eigen::Matrix3Xd& vectors) {
+  return vectors.cols() > 0 ? vectors.norm() / std::sqrt(static_cast<double>(vectors.cols())) : 0;
+}
+
+/// Cosine between two series of vectors.
+double Cosine(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+  const double norm = a.norm() * b.norm();
+  return norm > 0 ? a.cwiseProduct(b).sum() / norm : 0;
+}
+
+double AgreementOf(const Motions& estimate, const Motions& truth, const GroundTruthAxes& axes,
+                   const AxesDecision& uses) {
+  const Eigen::Matrix3d& S = axes.matrix();
   double sum = 0;
-  double count = 0;
-  for (std::size_t i = 0; i + stride < poses.size(); ++i, ++count) {
-    sum += RotationVector(RelativePose(poses[i], poses[i + stride])).squaredNorm();
+  if (uses.uses_rotation) {
+    sum += Cosine(estimate.rotation, S.determinant() * S.transpose() * truth.rotation);
   }
-  return count > 0 ? kDegPerRad * std::sqrt(sum / count) : 0;
+  if (uses.uses_translation) sum += Cosine(estimate.translation, S.transpose() * truth.translation);
+  return uses.uses_rotation && uses.uses_translation ? 0.5 * sum : sum;
+}
+
+/// The axis that "y", "+y" or "-y" names.
+std::optional<Eigen::Vector3d> ParseAxis(std::string text) {
+  const double sign = !text.empty() && text[0] == '-' ? -1 : 1;
+  if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.erase(0, 1);
+  if (text.size() != 1 || text[0] < 'x' || text[0] > 'z') return std::nullopt;
+  return sign * Eigen::Vector3d::Unit(text[0] - 'x');
 }
 
 }  // namespace
 
-TrajectoryPose ToOptical(const TrajectoryPose& pose, GroundTruthAxes axes) {
-  if (axes == GroundTruthAxes::kOptical) return pose;
-  Eigen::Matrix3d S;  // optical x = NED y, optical y = NED z, optical z = NED x
-  S << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+GroundTruthAxes GroundTruthAxes::Ned() { return *Parse("y,z,x"); }
+
+std::vector<GroundTruthAxes> GroundTruthAxes::All() {
+  std::vector<GroundTruthAxes> all = {Optical(), Ned()};
+  for (const double handedness : {1.0, -1.0}) {
+    std::array<int, 3> axis = {0, 1, 2};
+    do {
+      for (int signs = 0; signs < 8; ++signs) {
+        Eigen::Matrix3d S;
+        for (int i = 0; i < 3; ++i) {
+          S.col(i) = ((signs >> i) & 1 ? -1.0 : 1.0) *
+                     Eigen::Vector3d::Unit(axis[static_cast<std::size_t>(i)]);
+        }
+        const GroundTruthAxes axes(S);
+        if (S.determinant() * handedness > 0 && !axes.is_optical_or_ned()) all.push_back(axes);
+      }
+    } while (std::next_permutation(axis.begin(), axis.end()));
+  }
+  return all;
+}
+
+std::optional<GroundTruthAxes> GroundTruthAxes::Parse(const std::string& text) {
+  std::string small = text;
+  std::transform(small.begin(), small.end(), small.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (small == "optical") return Optical();
+  if (small == "ned") return Ned();
+  Eigen::Matrix3d S;
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t comma = i < 2 ? small.find(',') : small.size();
+    if (comma == std::string::npos) return std::nullopt;
+    const std::optional<Eigen::Vector3d> axis = ParseAxis(small.substr(0, comma));
+    if (!axis) return std::nullopt;
+    S.col(i) = *axis;
+    small.erase(0, comma + 1);
+  }
+  if (std::abs(S.determinant()) < 0.5) return std::nullopt;  // an axis twice
+  return GroundTruthAxes(S);
+}
+
+std::string GroundTruthAxes::Name() const {
+  if (*this == Optical()) return "optical";
+  if (*this == Ned()) return "NED";
+  std::string name;
+  for (int i = 0; i < 3; ++i) {
+    int axis = 0;
+    S_.col(i).cwiseAbs().maxCoeff(&axis);
+    if (i > 0) name += ",";
+    if (S_(axis, i) < 0) name += "-";
+    name += static_cast<char>('x' + axis);
+  }
+  return name;
+}
+
+bool GroundTruthAxes::is_right_handed() const { return S_.determinant() > 0; }
+
+TrajectoryPose ToOptical(const TrajectoryPose& pose, const GroundTruthAxes& axes) {
+  const Eigen::Matrix3d& S = axes.matrix();
   TrajectoryPose optical = pose;
   optical.rotation = S.transpose() * pose.rotation * S;
   optical.position_m = S.transpose() * pose.position_m;
@@ -74,32 +138,52 @@ TrajectoryPose ToOptical(const TrajectoryPose& pose, GroundTruthAxes axes) {
 }
 
 AxesDecision DetectAxes(const MatchedTrajectories& matched) {
-  constexpr std::size_t kLongestStride = 10;
   const std::size_t stride =
       std::clamp<std::size_t>(matched.estimate.size() / 4, 1, kLongestStride);
+  const Motions estimate = MotionsOf(matched.estimate, stride);
+  const Motions truth = MotionsOf(matched.ground_truth, stride);
   AxesDecision decision;
-  decision.optical = Compare(matched, GroundTruthAxes::kOptical, stride);
-  decision.ned = Compare(matched, GroundTruthAxes::kNed, stride);
-  decision.rotation_rms_deg = RotationRmsDeg(matched.ground_truth, stride);
-  decision.by_translation = decision.rotation_rms_deg < kMinRotationRmsDeg;
-  const double optical =
-      decision.by_translation ? decision.optical.translation : decision.optical.rotation;
-  const double ned = decision.by_translation ? decision.ned.translation : decision.ned.rotation;
-  decision.axes = ned > optical ? GroundTruthAxes::kNed : GroundTruthAxes::kOptical;
-  decision.is_known =
-      std::max(optical, ned) >= kMinAgreement && std::abs(optical - ned) >= kMinLead;
+  decision.uses_rotation = kDegPerRad * Rms(truth.rotation) >= kMinRotationRmsDeg;
+  decision.uses_translation = Rms(truth.translation) >= kMinTranslationRmsM;
+
+  const std::vector<GroundTruthAxes> all = GroundTruthAxes::All();
+  std::vector<double> agreement;
+  for (const GroundTruthAxes& axes : all) {
+    agreement.push_back(AgreementOf(estimate, truth, axes, decision));
+  }
+  const double best = *std::max_element(agreement.begin(), agreement.end());
+  decision.best_agreement = best;
+  const double margin = std::clamp(3 * (1 - best), kLeastMargin, kMostMargin);
+  bool is_found = false;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (agreement[i] < best - margin) {
+      decision.best_other = std::max(decision.best_other, agreement[i]);
+    } else if (!is_found) {
+      is_found = true;
+      decision.axes = all[i];
+      decision.agreement = agreement[i];
+    } else {
+      decision.alternatives.push_back(all[i]);
+    }
+  }
+  const bool is_optical_and_ned = std::count(decision.alternatives.begin(),
+                                             decision.alternatives.end(), GroundTruthAxes::Ned());
+  decision.is_known = best >= kMinAgreement && !is_optical_and_ned;
   return decision;
 }
 
 std::string AxesDecision::Explain() const {
-  const char* const what = by_translation ? "displacements" : "rotations";
-  const double optical_value = by_translation ? optical.translation : optical.rotation;
-  const double ned_value = by_translation ? ned.translation : ned.rotation;
-  char text[200];
+  const char* const what = uses_rotation && uses_translation ? "rotations and displacements"
+                           : uses_rotation                   ? "rotations"
+                           : uses_translation                ? "displacements"
+                                                             : "motions (there are hardly any)";
+  char text[300];
   std::snprintf(text, sizeof text,
-                "%s of estimate and ground truth in body axes agree by %.3f if it is optical, %.3f "
-                "if it is NED (1 = same, 0 = unrelated)",
-                what, optical_value, ned_value);
+                "%s of estimate and ground truth in body axes agree by %.3f if it is %s (%s), by "
+                "%.3f at most in other axes%s (1 = same, 0 = unrelated)",
+                what, agreement, axes.Name().c_str(),
+                axes.is_right_handed() ? "right-handed" : "left-handed", best_other,
+                alternatives.empty() ? "" : " but the alternatives named");
   return text;
 }
 

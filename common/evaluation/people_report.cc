@@ -1,212 +1,205 @@
 #include "common/evaluation/people_report.h"
 
-#include <zlib.h>
-
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <limits>
-#include <nlohmann/json.hpp>
+#include <map>
 #include <optional>
 #include <set>
-#include <tuple>
+#include <utility>
 
-#include "common/human/skeleton.h"
-#include "common/util/error.h"
+#include "common/evaluation/people_matching.h"
 
 namespace airdos {
 namespace {
 
-using nlohmann::json;
-
 constexpr double kSameTimeS = 0.001;
+constexpr double kGoodLengthPercent = 5;
 
-Joints ParseJoints(const json& object) {
-  Joints joints;
-  for (const auto& [key, place] : object.items()) {
-    const int id = std::stoi(key);
-    if (id >= kNumJoints) continue;  // of the face
-    joints[id] = Eigen::Vector3d(place.at(0).get<double>(), place.at(1).get<double>(),
-                                 place.at(2).get<double>());
-  }
-  return joints;
-}
-
-/// A file, unpacked if it is of gzip.
-std::string ReadUnpacked(const std::string& path) {
-  const gzFile file = gzopen(path.c_str(), "rb");
-  if (file == nullptr) throw InputError(path + ": cannot be read");
-  std::string text;
-  char buffer[1 << 16];
-  int size = 0;
-  while ((size = gzread(file, buffer, sizeof buffer)) > 0) {
-    text.append(buffer, static_cast<std::size_t>(size));
-  }
-  gzclose(file);
-  if (size < 0) throw InputError(path + ": cannot be unpacked");
-  return text;
-}
-
-/// T_true_W of a frame: maps points of the estimate's world to the true one, through the camera.
-std::optional<TrajectoryPose> TransformAt(const MatchedTrajectories& cameras, double time_s) {
+/// Index of the matched poses at a time, if any.
+std::optional<std::size_t> FindCamera(const MatchedTrajectories& cameras, double time_s) {
   for (std::size_t i = 0; i < cameras.estimate.size(); ++i) {
-    const TrajectoryPose& T_W_C = cameras.estimate[i];
-    const TrajectoryPose& T_true_C = cameras.ground_truth[i];
-    if (std::abs(T_W_C.time_s - time_s) > kSameTimeS) continue;
-    TrajectoryPose T_true_W;
-    T_true_W.rotation = T_true_C.rotation * T_W_C.rotation.transpose();
-    T_true_W.position_m = T_true_C.position_m - T_true_W.rotation * T_W_C.position_m;
-    return T_true_W;
+    if (std::abs(cameras.estimate[i].time_s - time_s) <= kSameTimeS) return i;
   }
   return std::nullopt;
 }
 
-std::vector<double> Distances(const Joints& estimate, const Joints& truth,
-                              const TrajectoryPose& T_true_W) {
-  std::vector<double> distances_m;
-  for (const auto& [id, p_W] : estimate) {
-    const auto other = truth.find(id);
-    if (other == truth.end()) continue;
-    const Eigen::Vector3d p_true = T_true_W.rotation * p_W + T_true_W.position_m;
-    distances_m.push_back((p_true - other->second).norm());
+std::size_t DepthBand(double depth_m) { return depth_m < 6 ? 0 : depth_m < 12 ? 1 : 2; }
+
+/// Errors (m) of joints before and after the optimization, as they are collected.
+struct JointErrorLists {
+  std::vector<double> measured_m;
+  std::vector<double> optimized_m;
+  JointErrors Summary() const {
+    return {ComputeStatistics(measured_m), ComputeStatistics(optimized_m)};
   }
-  return distances_m;
+};
+
+LengthErrors SummaryOf(const std::vector<double>& signed_percent) {
+  LengthErrors errors;
+  std::vector<double> relative_percent;
+  std::size_t num_good = 0;
+  for (const double error : signed_percent) {
+    relative_percent.push_back(std::abs(error));
+    if (std::abs(error) <= kGoodLengthPercent) ++num_good;
+  }
+  errors.relative_percent = ComputeStatistics(relative_percent);
+  errors.median_signed_percent = ComputeStatistics(signed_percent).median;
+  if (!signed_percent.empty()) {
+    errors.within_5_percent =
+        100 * static_cast<double>(num_good) / static_cast<double>(signed_percent.size());
+  }
+  return errors;
 }
 
-using Pairs = std::map<std::int64_t, std::int64_t>;  // true person -> index of the state
+/// What was seen of one person by one track.
+struct PersonOnTrack {
+  int num_frames = 0;
+  double least_depth_m = 1e9;
+  std::map<int, double> length_m;  ///< estimated, at the last frame
+  std::array<std::vector<double>, kNumSegments> true_length_m;
+};
 
-/// Pairs the states of one frame with true people; `last_track` says whom a person was before.
-Pairs MakePairs(const std::vector<const PersonState*>& states, const TruePeople& truth,
-                const TrajectoryPose& T_true_W,
-                const std::map<std::int64_t, std::int64_t>& last_track, double max_distance_m) {
-  std::set<std::tuple<bool, double, std::int64_t, std::int64_t>> candidates;
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    for (const auto& [person, joints] : truth.people) {
-      const Statistics distance =
-          ComputeStatistics(Distances(states[i]->joints_W, joints, T_true_W));
-      if (distance.count == 0 || distance.mean > max_distance_m) continue;
-      const auto last = last_track.find(person);
-      const bool is_new = last == last_track.end() || last->second != states[i]->track;
-      candidates.emplace(is_new, distance.mean, person, static_cast<std::int64_t>(i));
+/// Collects errors frame by frame.
+class PeopleEvaluator {
+ public:
+  void AddFrame(const std::vector<const PersonState*>& states, const TruePeople& truth,
+                const TrajectoryPose& T_W_C, const TrajectoryPose& T_true_C);
+  PeopleReport Report() const;
+
+ private:
+  void AddJoints(const PersonState& state, const TrajectoryPose& T_W_C, const Joints& truth_C);
+  void AddLengths(const PersonState& state, std::int64_t person, const Joints& truth_C);
+
+  PeopleReport counts_;
+  std::set<std::int64_t> tracks_;
+  IdentityEvaluator identity_;
+  JointErrorLists all_;
+  std::array<JointErrorLists, kNumDepthBands> by_depth_;
+  std::map<std::pair<std::int64_t, std::int64_t>, PersonOnTrack> lengths_;  // person, track
+};
+
+void PeopleEvaluator::AddFrame(const std::vector<const PersonState*>& states,
+                               const TruePeople& truth, const TrajectoryPose& T_W_C,
+                               const TrajectoryPose& T_true_C) {
+  std::map<std::int64_t, Joints> truth_C;
+  std::set<std::int64_t> to_be_seen;
+  for (const auto& [identity, person] : truth.people) {
+    truth_C[identity] = InCamera(person.joints, T_true_C);
+    if (IsToBeSeen(person, truth_C[identity])) to_be_seen.insert(identity);
+  }
+  std::vector<Joints> measured_C;
+  std::map<std::int64_t, std::optional<std::int64_t>> person_of_track;
+  for (const PersonState* state : states) {
+    measured_C.push_back(InCamera(state->measured_W, T_W_C));
+    tracks_.insert(state->track);
+    person_of_track[state->track] = std::nullopt;
+  }
+  const std::map<std::size_t, std::int64_t> matches = MatchPeople(measured_C, truth_C);
+  for (const auto& [index, person] : matches) {
+    const PersonState& state = *states[index];
+    person_of_track[state.track] = person;
+    counts_.num_seen += to_be_seen.count(person);
+    AddJoints(state, T_W_C, truth_C.at(person));
+    AddLengths(state, person, truth_C.at(person));
+  }
+  counts_.num_states += states.size();
+  counts_.num_matched += matches.size();
+  counts_.num_to_be_seen += to_be_seen.size();
+  identity_.AddFrame(to_be_seen, person_of_track);
+}
+
+void PeopleEvaluator::AddJoints(const PersonState& state, const TrajectoryPose& T_W_C,
+                                const Joints& truth_C) {
+  const Joints measured_C = InCamera(state.measured_W, T_W_C);
+  const std::size_t band = DepthBand(MiddleDepth(truth_C));
+  for (const auto& [joint, p_C] : InCamera(state.joints_W, T_W_C)) {
+    const auto measured = measured_C.find(joint);
+    const auto truth = truth_C.find(joint);
+    if (measured == measured_C.end() || truth == truth_C.end()) continue;
+    for (JointErrorLists* errors : {&all_, &by_depth_[band]}) {
+      errors->optimized_m.push_back((p_C - truth->second).norm());
+      errors->measured_m.push_back((measured->second - truth->second).norm());
     }
   }
-  Pairs pairs;
-  std::set<std::int64_t> used;
-  for (const auto& [is_new, distance, person, state] : candidates) {
-    if (pairs.count(person) > 0 || used.count(state) > 0) continue;
-    pairs[person] = state;
-    used.insert(state);
-  }
-  return pairs;
 }
 
-void Append(const std::vector<double>& values, std::vector<double>* all) {
-  all->insert(all->end(), values.begin(), values.end());
+void PeopleEvaluator::AddLengths(const PersonState& state, std::int64_t person,
+                                 const Joints& truth_C) {
+  PersonOnTrack& seen = lengths_[{person, state.track}];
+  ++seen.num_frames;
+  seen.least_depth_m = std::min(seen.least_depth_m, MiddleDepth(truth_C));
+  seen.length_m = state.segment_length_m;
+  for (std::size_t segment = 0; segment < kNumSegments; ++segment) {
+    const auto a = truth_C.find(kSegments[segment].joint_a);
+    const auto b = truth_C.find(kSegments[segment].joint_b);
+    if (a == truth_C.end() || b == truth_C.end()) continue;
+    seen.true_length_m[segment].push_back((a->second - b->second).norm());
+  }
+}
+
+PeopleReport PeopleEvaluator::Report() const {
+  PeopleReport report = counts_;
+  report.num_tracks = tracks_.size();
+  report.identity = identity_.Score();
+  report.joint_errors = all_.Summary();
+  for (std::size_t i = 0; i < kNumDepthBands; ++i) {
+    report.joint_errors_by_depth[i] = by_depth_[i].Summary();
+  }
+  std::set<std::int64_t> people;
+  std::vector<double> errors;
+  std::array<std::vector<double>, kNumSegments> of_segment;
+  std::array<std::vector<double>, kNumDepthBands> of_depth;
+  for (const auto& [ids, seen] : lengths_) {
+    people.insert(ids.first);
+    if (seen.num_frames < kMinFramesForLengths) continue;
+    for (const auto& [segment, length_m] : seen.length_m) {
+      const double truth_m =
+          ComputeStatistics(seen.true_length_m.at(static_cast<std::size_t>(segment))).mean;
+      if (!(truth_m > 0)) continue;
+      const double error_percent = 100 * (length_m / truth_m - 1);
+      errors.push_back(error_percent);
+      of_segment[static_cast<std::size_t>(segment)].push_back(error_percent);
+      of_depth[DepthBand(seen.least_depth_m)].push_back(error_percent);
+    }
+  }
+  report.num_people = people.size();
+  report.lengths = SummaryOf(errors);
+  std::transform(of_segment.begin(), of_segment.end(), report.lengths_by_segment.begin(),
+                 SummaryOf);
+  std::transform(of_depth.begin(), of_depth.end(), report.lengths_by_depth.begin(), SummaryOf);
+  return report;
+}
+
+double ImprovementPercent(double before, double after) {
+  return before > 0 ? 100 * (1 - after / before) : 0;
 }
 
 }  // namespace
 
-std::vector<PersonState> ReadPeople(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(path + ": cannot be read");
-  std::vector<PersonState> states;
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    try {
-      const json object = json::parse(line);
-      PersonState state;
-      state.time_s = 1e-6 * object.at("utime").get<double>();
-      state.track = object.at("track");
-      state.joints_W = ParseJoints(object.at("joints"));
-      state.measured_W = ParseJoints(object.at("measured"));
-      states.push_back(std::move(state));
-    } catch (const std::exception& error) {
-      throw InputError(path + ":" + std::to_string(number) + ": " + error.what());
-    }
-  }
-  return states;
+double JointErrors::mean_improvement_percent() const {
+  return ImprovementPercent(measured.mean, optimized.mean);
 }
 
-std::vector<TruePeople> ReadTruePeople(const std::string& path) {
-  const std::string text = ReadUnpacked(path);
-  std::vector<TruePeople> frames;
-  try {
-    for (const json& object : json::parse(text)) {
-      TruePeople frame;
-      frame.time_s = object.at("t");
-      for (const json& human : object.at("humans")) {
-        frame.people[human.at("id")] = ParseJoints(human.at("joints_w"));
-      }
-      frames.push_back(std::move(frame));
-    }
-  } catch (const std::exception& error) {
-    throw InputError(path + ": " + error.what());
-  }
-  return frames;
+double JointErrors::median_improvement_percent() const {
+  return ImprovementPercent(measured.median, optimized.median);
 }
 
 PeopleReport EvaluatePeople(const std::vector<PersonState>& estimate,
                             const std::vector<TruePeople>& truth,
-                            const MatchedTrajectories& cameras, double max_distance_m) {
-  PeopleReport report;
-  std::vector<double> errors_m;
-  std::vector<double> measured_errors_m;
-  std::set<std::int64_t> tracks;
-  std::map<std::int64_t, std::int64_t> last_track;  // of each true person
+                            const MatchedTrajectories& cameras) {
+  PeopleEvaluator evaluator;
   for (const TruePeople& frame : truth) {
-    const std::optional<TrajectoryPose> T_true_W = TransformAt(cameras, frame.time_s);
-    if (!T_true_W) continue;
+    const std::optional<std::size_t> camera = FindCamera(cameras, frame.time_s);
+    if (!camera) continue;
     std::vector<const PersonState*> states;
     for (const PersonState& state : estimate) {
-      if (std::abs(state.time_s - frame.time_s) <= kSameTimeS) states.push_back(&state);
+      if (std::abs(state.time_s - frame.time_s) <= kSameTimeS && !state.joints_W.empty()) {
+        states.push_back(&state);
+      }
     }
-    report.num_states += states.size();
-    for (const PersonState* state : states) tracks.insert(state->track);
-    const Pairs pairs = MakePairs(states, frame, *T_true_W, last_track, max_distance_m);
-    report.num_matched += pairs.size();
-    for (const auto& [person, index] : pairs) {
-      const PersonState& state = *states[static_cast<std::size_t>(index)];
-      const auto [last, is_first] = last_track.emplace(person, state.track);
-      if (!is_first && last->second != state.track) ++report.num_identity_switches;
-      last->second = state.track;
-      const Joints& joints = frame.people.at(person);
-      Append(Distances(state.joints_W, joints, *T_true_W), &errors_m);
-      Append(Distances(state.measured_W, joints, *T_true_W), &measured_errors_m);
-    }
+    evaluator.AddFrame(states, frame, cameras.estimate[*camera], cameras.ground_truth[*camera]);
   }
-  report.num_tracks = tracks.size();
-  report.num_people = last_track.size();
-  report.joint_error_m = ComputeStatistics(errors_m);
-  report.measured_error_m = ComputeStatistics(measured_errors_m);
-  return report;
-}
-
-std::string ToTable(const PeopleReport& r) {
-  char text[700];
-  std::snprintf(text, sizeof text,
-                "%zu states of %zu tracks, %zu matched with %zu people, %zu identity switches\n"
-                "  %-24s %-6s %9s %9s %9s %9s\n  %-24s %-6s %9.4f %9.4f %9.4f %9.4f\n"
-                "  %-24s %-6s %9.4f %9.4f %9.4f %9.4f\n",
-                r.num_states, r.num_tracks, r.num_matched, r.num_people, r.num_identity_switches,
-                "error of the joints", "unit", "rmse", "mean", "median", "max", "optimized", "m",
-                r.joint_error_m.rmse, r.joint_error_m.mean, r.joint_error_m.median,
-                r.joint_error_m.max, "as triangulated", "m", r.measured_error_m.rmse,
-                r.measured_error_m.mean, r.measured_error_m.median, r.measured_error_m.max);
-  return text;
-}
-
-json ToJson(const PeopleReport& r) {
-  const auto statistics = [](const Statistics& s) {
-    return json{{"count", s.count},   {"rmse", s.rmse}, {"mean", s.mean},
-                {"median", s.median}, {"max", s.max},   {"std", s.std}};
-  };
-  return {{"states", r.num_states},
-          {"states_matched", r.num_matched},
-          {"tracks", r.num_tracks},
-          {"people_matched", r.num_people},
-          {"identity_switches", r.num_identity_switches},
-          {"joint_error_m", statistics(r.joint_error_m)},
-          {"joint_error_measured_m", statistics(r.measured_error_m)}};
+  return evaluator.Report();
 }
 
 }  // namespace airdos

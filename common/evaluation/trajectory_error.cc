@@ -49,6 +49,17 @@ std::vector<RelativeError> ErrorsPerFrame(const MatchedTrajectories& matched) {
   return errors;
 }
 
+std::size_t CountLostFrames(const MatchedTrajectories& matched, std::size_t num_frames) {
+  const std::size_t num_posed = matched.estimate.size();
+  std::size_t num_lost = num_frames > num_posed ? num_frames - num_posed : 0;
+  for (const RelativeError& error : ErrorsPerFrame(matched)) {
+    const bool is_lost =
+        error.translation_m > kLostTranslationM || error.rotation_deg > kLostRotationDeg;
+    if (is_lost) ++num_lost;
+  }
+  return num_lost;
+}
+
 std::vector<RelativeError> ErrorsOverLength(const MatchedTrajectories& matched, double length_m) {
   const std::vector<double> path_m = PathLengths(matched.ground_truth);
   std::vector<RelativeError> errors;

@@ -27,6 +27,15 @@ RelativeError ErrorOfMotion(const MatchedTrajectories& matched, std::size_t i, s
 /// next matched pose is not the next frame.
 std::vector<RelativeError> ErrorsPerFrame(const MatchedTrajectories& matched);
 
+/// A step that is wrong by more than one of these has lost the camera: at walking pace it moves
+/// about as far from one frame to the next, and half of that is no tracking any more.
+constexpr double kLostTranslationM = 0.10;
+constexpr double kLostRotationDeg = 2.0;
+/// Frames lost: those without a pose (of `num_frames`, at least the matched ones), and those whose
+/// step from the last frame with a pose is wrong by more than kLostTranslationM or kLostRotationDeg
+/// (see ErrorsPerFrame). The first pose has no step and is never lost.
+std::size_t CountLostFrames(const MatchedTrajectories& matched, std::size_t num_frames);
+
 /// The error of the motion from each i to the first j with a path of at least `length_m` between
 /// them; poses with no such j are left out.
 std::vector<RelativeError> ErrorsOverLength(const MatchedTrajectories& matched, double length_m);

@@ -22,8 +22,13 @@ std::string Format(const char* format, ...) {
   return text;
 }
 
-const char* NameOf(GroundTruthAxes axes) {
-  return axes == GroundTruthAxes::kNed ? "NED" : "optical";
+Statistics AlignedError(const MatchedTrajectories& matched, const Similarity& similarity) {
+  return ComputeStatistics(
+      PositionErrors(Apply(similarity, matched.estimate), matched.ground_truth));
+}
+
+Statistics ErrorAlignedBy(const MatchedTrajectories& matched, Alignment alignment) {
+  return AlignedError(matched, ComputeAlignment(matched, alignment));
 }
 
 void DecideAxes(const MatchedTrajectories& matched, const EvaluationOptions& options,
@@ -31,9 +36,15 @@ void DecideAxes(const MatchedTrajectories& matched, const EvaluationOptions& opt
   const AxesDecision decision = DetectAxes(matched);
   report->axes = options.axes.value_or(decision.axes);
   report->axes_reason = (options.axes ? "as given; " : "detected: ") + decision.Explain();
-  if (!options.axes && !decision.is_known) {
+  if (options.axes) return;
+  if (!decision.is_known) {
     throw InputError("ground truth: its axes cannot be told, " + decision.Explain() +
-                     ": give --gt-axes optical or ned");
+                     ": give --gt-axes optical, ned or such as y,-z,x");
+  }
+  for (const GroundTruthAxes& axes : decision.alternatives) {
+    MatchedTrajectories other = matched;
+    for (TrajectoryPose& pose : other.ground_truth) pose = ToOptical(pose, axes);
+    report->alternatives.push_back({axes, ErrorAlignedBy(other, Alignment::kSe3)});
   }
 }
 
@@ -54,11 +65,6 @@ void FillRelativeErrors(const MatchedTrajectories& matched, TrajectoryReport* re
   }
   report->rpe_translation_per_metre_m = ComputeStatistics(translation_m);
   report->rpe_rotation_per_metre_deg = ComputeStatistics(rotation_deg);
-}
-
-Statistics AlignedError(const MatchedTrajectories& matched, const Similarity& similarity) {
-  return ComputeStatistics(
-      PositionErrors(Apply(similarity, matched.estimate), matched.ground_truth));
 }
 
 std::string Row(const char* name, const char* unit, const Statistics& s) {
@@ -89,12 +95,13 @@ TrajectoryReport EvaluateTrajectory(const Trajectory& estimate, const Trajectory
                      std::to_string(report.num_ground_truth) +
                      " of the ground truth: at least 2 are needed (see --max-diff)");
   }
-  const std::size_t num_frames =
-      options.num_frames > 0 ? options.num_frames : report.num_ground_truth;
-  report.completeness = static_cast<double>(report.num_matched) / static_cast<double>(num_frames);
+  report.num_frames = options.num_frames > 0 ? options.num_frames : report.num_ground_truth;
+  report.completeness =
+      static_cast<double>(report.num_matched) / static_cast<double>(report.num_frames);
   DecideAxes(matched, options, &report);
   for (TrajectoryPose& pose : matched.ground_truth) pose = ToOptical(pose, report.axes);
 
+  report.num_lost = CountLostFrames(matched, report.num_frames);
   report.path_m = PathLengths(matched.ground_truth).back();
   if (report.has_times) {
     report.duration_s = matched.ground_truth.back().time_s - matched.ground_truth.front().time_s;
@@ -116,9 +123,17 @@ std::string ToTable(const TrajectoryReport& r) {
   std::string text =
       Format("%zu poses estimated, %zu in the ground truth, %zu matched: %.1f %% complete\n",
              r.num_estimate, r.num_ground_truth, r.num_matched, 100 * r.completeness);
+  text += Format("%zu of %zu frames lost (no pose, or a step wrong by over %.2f m or %.0f deg)\n",
+                 r.num_lost, r.num_frames, kLostTranslationM, kLostRotationDeg);
   text += Format("path %.3f m", r.path_m);
   if (r.has_times) text += Format(" in %.3f s", r.duration_s);
-  text += Format("\nground truth axes: %s, ", NameOf(r.axes)) + r.axes_reason + "\n\n";
+  text += "\nground truth axes: " + r.axes.Name() + ", " + r.axes_reason + "\n";
+  for (const AxesAlternative& other : r.alternatives) {
+    text += "  AMBIGUOUS: the motion fits axes " + other.axes.Name() +
+            (other.axes.is_right_handed() ? " (right-handed)" : " (left-handed)") +
+            Format(" as well, with ATE %.4f m\n", other.ate_se3_m.rmse);
+  }
+  text += "\n";
   text += Format("  %-24s %-6s %9s %9s %9s %9s %9s\n", "error", "unit", "rmse", "mean", "median",
                  "max", "std");
   text += Row("ATE, SE(3) aligned", "m", r.ate_se3_m);
@@ -145,13 +160,23 @@ nlohmann::json ToJson(const TrajectoryReport& r) {
                         {"translation_percent", drift.translation_percent},
                         {"rotation_deg_per_m", drift.rotation_deg_per_m}});
   }
+  nlohmann::json alternatives = nlohmann::json::array();
+  for (const AxesAlternative& other : r.alternatives) {
+    alternatives.push_back({{"axes", other.axes.Name()},
+                            {"right_handed", other.axes.is_right_handed()},
+                            {"ate_se3_m", StatisticsToJson(other.ate_se3_m)}});
+  }
   return {{"poses_estimated", r.num_estimate},
           {"poses_ground_truth", r.num_ground_truth},
           {"poses_matched", r.num_matched},
           {"completeness", r.completeness},
+          {"frames", r.num_frames},
+          {"frames_lost", r.num_lost},
           {"path_m", r.path_m},
           {"duration_s", r.has_times ? nlohmann::json(r.duration_s) : nlohmann::json(nullptr)},
-          {"ground_truth_axes", NameOf(r.axes)},
+          {"ground_truth_axes", r.axes.Name()},
+          {"ground_truth_right_handed", r.axes.is_right_handed()},
+          {"ground_truth_axes_alternatives", alternatives},
           {"ground_truth_axes_reason", r.axes_reason},
           {"ate_none_m", StatisticsToJson(r.ate_none_m)},
           {"ate_se3_m", StatisticsToJson(r.ate_se3_m)},

@@ -20,17 +20,26 @@ struct EvaluationOptions {
   std::size_t num_frames = 0;
 };
 
+/// Other axes of the ground truth that the motion fits as well, and what follows from them.
+struct AxesAlternative {
+  GroundTruthAxes axes;
+  Statistics ate_se3_m;
+};
+
 /// Everything that is said of one estimated trajectory.
 struct TrajectoryReport {
   std::size_t num_estimate = 0;
   std::size_t num_ground_truth = 0;
   std::size_t num_matched = 0;
-  double completeness = 0;  ///< matched poses / frames (see EvaluationOptions::num_frames)
-  double path_m = 0;        ///< of the ground truth's matched poses
-  double duration_s = 0;    ///< of the matched poses; 0 for KITTI rows
+  double completeness = 0;     ///< matched poses / frames (see EvaluationOptions::num_frames)
+  std::size_t num_frames = 0;  ///< EvaluationOptions::num_frames, or what stands for it
+  std::size_t num_lost = 0;    ///< see CountLostFrames()
+  double path_m = 0;           ///< of the ground truth's matched poses
+  double duration_s = 0;       ///< of the matched poses; 0 for KITTI rows
 
-  GroundTruthAxes axes = GroundTruthAxes::kOptical;
+  GroundTruthAxes axes;
   std::string axes_reason;
+  std::vector<AxesAlternative> alternatives;  ///< none where the axes were given
 
   Statistics ate_none_m;
   Statistics ate_se3_m;   ///< after the best rigid motion of the estimate's world

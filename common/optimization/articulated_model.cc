@@ -16,7 +16,7 @@ std::shared_ptr<const ArticulatedModel> MakeCocoBody() {
   for (const RigidPart& part : kParts) {
     model->parts.emplace_back(part.joints.begin(), part.joints.begin() + part.num_joints);
   }
-  model->body_points = {kNeck, kRightShoulder, kLeftShoulder, kRightHip, kLeftHip, kNose};
+  model->body_points.assign(kBodyJoints.begin(), kBodyJoints.end());
   return model;
 }
 

@@ -134,7 +134,9 @@ void BundleGraph::AddRigidity(const std::vector<Sighting>& sightings, BundleProb
     people_blocks_.push_back(&*length_m);
     if (num_factors > 0 && human->known_length_m[segment]) {
       ceres_problem_.AddResidualBlock(
-          new LengthPriorFactor(*human->known_length_m[segment], options_.segment_length_sigma_m),
+          new LengthPriorFactor(
+              *human->known_length_m[segment],
+              std::hypot(human->known_length_sigma_m[segment], options_.segment_length_sigma_m)),
           nullptr, &*length_m);
     }
   }

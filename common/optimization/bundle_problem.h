@@ -101,8 +101,9 @@ struct BundleProblem {
     std::vector<PartMotion> motions;  ///< result, sorted by (frame, part)
     /// Start value, then result; factors only where given.
     Lengths segment_length_m = Lengths(kNumSegments);
-    /// Lengths known from the track before this window, if it is older.
+    /// Lengths known from the track before this window, if it is older, and how well.
     Lengths known_length_m = Lengths(kNumSegments);
+    std::vector<double> known_length_sigma_m = std::vector<double>(kNumSegments);
     int num_rigidity_eliminated = 0;  ///< results
     int num_motion_eliminated = 0;
     std::shared_ptr<const ArticulatedModel> model = CocoBodyModel();

@@ -4,15 +4,6 @@
 #include <utility>
 
 namespace airdos {
-namespace {
-
-// A length is free of sign in the solver: two joints that a bad disparity tore apart, or that share
-// a pixel, can drive it to anything. Beyond these it is no segment of a body.
-constexpr double kShortest_m = 0.02;
-constexpr double kLongest_m = 1.5;
-
-}  // namespace
-
 void HumanTracks::AddFrame(const StereoCamera& camera, const FrameInput& input) {
   frames_.push_back(input.id);
   times_s_[input.id] = input.time_s;
@@ -27,12 +18,17 @@ void HumanTracks::AddFrame(const StereoCamera& camera, const FrameInput& input) 
     }
     if (joints.empty()) continue;
     Person& person = people_[human.id];
+    person.lengths.Add(MeasuredJoints(camera, joints));
     person.sightings[input.id] = std::move(joints);
     person.last_seen = input.id;
-    ++person.num_sightings;
   }
   if (static_cast<int>(frames_.size()) > options_.window_frames) {
-    for (auto& [id, person] : people_) person.sightings.erase(frames_.front());
+    for (auto& [id, person] : people_) {
+      const auto oldest = person.sightings.find(frames_.front());
+      if (oldest == person.sightings.end()) continue;
+      person.lengths_before_window.Add(MeasuredJoints(camera, oldest->second));
+      person.sightings.erase(oldest);
+    }
     times_s_.erase(frames_.front());
     frames_.erase(frames_.begin());
   }
@@ -42,18 +38,14 @@ void HumanTracks::AddFrame(const StereoCamera& camera, const FrameInput& input) 
   }
 }
 
-std::optional<double> HumanTracks::MeanLength(const Person& person, std::size_t segment) const {
-  double sum_m = 0;
-  int num = 0;
-  for (const auto& [frame, joints] : person.sightings) {
-    const auto a = joints.find(kSegments[segment].joint_a);
-    const auto b = joints.find(kSegments[segment].joint_b);
-    if (a == joints.end() || b == joints.end()) continue;
-    sum_m += (a->second.p_C - b->second.p_C).norm();
-    ++num;
+std::map<int, MeasuredJoint> HumanTracks::MeasuredJoints(const StereoCamera& camera,
+                                                         const std::map<int, Joint>& joints) {
+  std::map<int, MeasuredJoint> measured;
+  for (const auto& [id, joint] : joints) {
+    const Eigen::Matrix3d J_inverse = camera.ProjectStereoJacobian(joint.p_C_measured).inverse();
+    measured[id] = {joint.p_C_measured, J_inverse * joint.covariance_px2 * J_inverse.transpose()};
   }
-  if (num == 0) return std::nullopt;
-  return sum_m / num;
+  return measured;
 }
 
 void HumanTracks::AddTo(BundleProblem* problem) const {
@@ -74,12 +66,16 @@ void HumanTracks::AddTo(BundleProblem* problem) const {
             {frame, joint, T_W_C * seen.p_C, seen.uvu_px, seen.covariance_px2, false});
       }
     }
-    const bool is_known = person.num_sightings >= options_.min_frames_for_lengths;
     for (std::size_t segment = 0; segment < kNumSegments; ++segment) {
-      const std::optional<double> mean_m = MeanLength(person, segment);
-      if (!mean_m) continue;
-      if (is_known) human.known_length_m[segment] = person.length_m[segment];
-      human.segment_length_m[segment] = human.known_length_m[segment].value_or(*mean_m);
+      const std::optional<SegmentLengths::Length> length = person.lengths.Find(segment);
+      if (!length) continue;
+      human.segment_length_m[segment] = length->mean_m;
+      // What the window's frames say about a length, they say to the solver themselves.
+      const std::optional<SegmentLengths::Length> known =
+          person.lengths_before_window.Find(segment);
+      if (!known) continue;
+      human.known_length_m[segment] = known->mean_m;
+      human.known_length_sigma_m[segment] = known->sigma_m;
     }
     problem->humans.push_back(std::move(human));
   }
@@ -96,12 +92,6 @@ void HumanTracks::Absorb(const BundleProblem& problem) {
       joint.is_eliminated = state.is_eliminated || !is_possible;
       // A joint that lost its measurement starts from it again next time.
       joint.p_C = joint.is_eliminated ? joint.p_C_measured : p_C;
-    }
-    for (std::size_t segment = 0; segment < kNumSegments; ++segment) {
-      const std::optional<double>& length_m = human.segment_length_m[segment];
-      if (length_m && *length_m > kShortest_m && *length_m < kLongest_m) {
-        person.length_m[segment] = length_m;
-      }
     }
   }
 }
@@ -121,8 +111,8 @@ std::vector<HumanState> HumanTracks::Describe(FrameId frame, const Se3& T_W_C,
       state.joints.push_back({joint, T_W_C * seen.p_C, T_W_C * seen.p_C_measured});
     }
     for (std::size_t segment = 0; segment < kNumSegments; ++segment) {
-      if (!person.length_m[segment]) continue;
-      state.segments.push_back({static_cast<int>(segment), *person.length_m[segment]});
+      const std::optional<SegmentLengths::Length> length = person.lengths.Find(segment);
+      if (length) state.segments.push_back({static_cast<int>(segment), length->mean_m});
     }
     for (const BundleProblem::Human& human : problem.humans) {
       if (human.id != id) continue;

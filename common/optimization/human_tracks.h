@@ -10,14 +10,14 @@
 #include "common/human/skeleton.h"
 #include "common/optimization/bundle_problem.h"
 #include "common/optimization/frame_input.h"
+#include "common/optimization/segment_lengths.h"
 
 namespace airdos {
 
 struct HumanTracksOptions {
-  int window_frames = 8;            ///< newest frames whose people are in the adjustment
-  int forget_after_frames = 100;    ///< the lengths of a person not seen for longer are forgotten
-  int min_frames_for_lengths = 10;  ///< sightings before the track's lengths count as known
-  double min_disparity_px = 0.5;    ///< a joint with less has no depth and is left out
+  int window_frames = 8;          ///< newest frames whose people are in the adjustment
+  int forget_after_frames = 100;  ///< the lengths of a person not seen for longer are forgotten
+  double min_disparity_px = 0.5;  ///< a joint with less has no depth and is left out
   double max_depth_m = 60;
 };
 
@@ -40,9 +40,9 @@ struct HumanState {
   std::vector<BundleProblem::PartMotion> motions;
 };
 
-/// The optimizer's memory of people: what was seen of each in the last frames, and the lengths of
-/// their segments. Joints are kept in the camera's axes, so that they move along when poses are
-/// corrected.
+/// The optimizer's memory of people: what was seen of each in the last frames, and what all frames
+/// said about the lengths of their segments (see SegmentLengths). Joints are kept in the camera's
+/// axes, so that they move along when poses are corrected.
 class HumanTracks {
  public:
   explicit HumanTracks(const HumanTracksOptions& options) : options_(options) {}
@@ -52,8 +52,8 @@ class HumanTracks {
 
   /// Fills `problem->humans` from the newest frames, which `problem->frames` must hold.
   void AddTo(BundleProblem* problem) const;
-  /// Takes joints and lengths back from a solved problem: the joints relative to its
-  /// cameras. Lengths and joints that no body has are not taken.
+  /// Takes joints back from a solved problem, relative to its cameras. Joints that no body has are
+  /// not taken, nor are lengths: those come from the measurements of all frames.
   void Absorb(const BundleProblem& problem);
 
   /// Everyone seen in `frame` (one of frames()), with `T_W_C` as its camera and the motions of
@@ -75,12 +75,13 @@ class HumanTracks {
   };
   struct Person {
     std::map<FrameId, std::map<int, Joint>> sightings;  // of the frames in memory
-    std::array<std::optional<double>, kNumSegments> length_m;
-    int num_sightings = 0;
+    SegmentLengths lengths;                             // from all frames
+    SegmentLengths lengths_before_window;               // from those no more in memory
     FrameId last_seen;
   };
 
-  std::optional<double> MeanLength(const Person& person, std::size_t segment) const;
+  static std::map<int, MeasuredJoint> MeasuredJoints(const StereoCamera& camera,
+                                                     const std::map<int, Joint>& joints);
 
   HumanTracksOptions options_;
   std::vector<FrameId> frames_;

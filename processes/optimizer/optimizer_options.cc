@@ -39,7 +39,6 @@ void ReadPeople(ConfigReader* config, SlidingWindowOptions* window) {
       config->ReadChoice("people.motion_form", {"velocity", "velocity_track", "se3_parts"}));
   config->Read("people.window_frames", &window->people.window_frames, 2, 100);
   config->Read("people.forget_after_frames", &window->people.forget_after_frames, 1, 1000000);
-  config->Read("people.min_frames_for_lengths", &window->people.min_frames_for_lengths, 1, 100000);
   config->Read("people.min_disparity_px", &window->people.min_disparity_px, 0.01, 100);
   config->Read("people.max_depth_m", &window->people.max_depth_m, 0.1, 1e4);
   config->Read("people.huber", &bundle->huber_dynamic, kMinSigma, 1e6);

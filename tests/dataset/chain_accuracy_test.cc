@@ -57,7 +57,7 @@ class ChainTest : public testing::Test {
 
   TrajectoryReport Evaluate(bool has_ned_truth) const {
     EvaluationOptions options;
-    options.axes = has_ned_truth ? GroundTruthAxes::kNed : GroundTruthAxes::kOptical;
+    options.axes = has_ned_truth ? GroundTruthAxes::Ned() : GroundTruthAxes::Optical();
     return EvaluateTrajectory(ReadTrajectory(folder_ / "trajectory.tum"),
                               ReadTrajectory(folder_ / "ground_truth.tum"), options);
   }

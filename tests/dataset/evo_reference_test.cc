@@ -44,7 +44,7 @@ TEST(EvoReferenceTest, AllFiguresAgree) {
         ReadTrajectory(folder + reference.at("estimate").get<std::string>()),
         ReadTrajectory(folder + reference.at("ground_truth").get<std::string>()), options);
     EXPECT_EQ(report.num_matched, reference.at("matched_poses").get<std::size_t>()) << name;
-    EXPECT_EQ(report.axes, GroundTruthAxes::kOptical) << name << ": " << report.axes_reason;
+    EXPECT_EQ(report.axes, GroundTruthAxes::Optical()) << name << ": " << report.axes_reason;
     ExpectSame(report.ate_none_m, reference.at("ate_none_m"), name + " ate none");
     ExpectSame(report.ate_se3_m, reference.at("ate_se3_m"), name + " ate SE(3)");
     ExpectSame(report.ate_sim3_m, reference.at("ate_sim3_m"), name + " ate Sim(3)");

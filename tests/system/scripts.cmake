@@ -6,3 +6,5 @@ add_test(NAME install_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/install_test.sh $
 set_tests_properties(install_test PROPERTIES LABELS system TIMEOUT 180 ENVIRONMENT CXX=${CMAKE_CXX_COMPILER})
 add_test(NAME includes_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/includes_test.sh ${PROJECT_SOURCE_DIR})
 set_tests_properties(includes_test PROPERTIES LABELS unit TIMEOUT 60)
+add_test(NAME benchmarks_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/benchmarks_test.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(benchmarks_test PROPERTIES LABELS system TIMEOUT 180 SKIP_RETURN_CODE 77)

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -261,6 +263,104 @@ TEST_F(DatasetTest, NamesWhatIsWrongWithKittiFiles) {
   EXPECT_EQ(OpenMessage(), Path("poses.txt") + ":1: must hold 12 numbers (3 x 4), holds 11");
   Write("poses.txt", "1 0 0 5 0 1 0 6 0 0 2 7\n");
   EXPECT_NE(OpenMessage().find("poses.txt:1: columns"), std::string::npos);
+}
+
+/// A row of OXTS: latitude, longitude (deg), altitude (m), roll, pitch, yaw (rad), and 24 others.
+std::string OxtsRow(double latitude, double longitude, double altitude, double yaw) {
+  char row[200];
+  std::snprintf(row, sizeof row, "%.12f %.12f %.6f 0 0 %.12f", latitude, longitude, altitude, yaw);
+  std::string text = row;
+  for (int i = 0; i < 24; ++i) text += " 0";
+  return text + "\n";
+}
+
+/// KITTI tracking with a camera 0.1 m left of camera 0 and 2 m ahead of the inertial unit: I and
+/// the laser scanner have x forward, y left, z up.
+class KittiTrackingTest : public DatasetTest {
+ protected:
+  void SetUp() override {
+    DatasetTest::SetUp();
+    WriteImages("training/image_02/0013", "training/image_03/0013", 3);
+    Write("training/calib/0013.txt",
+          "P0: 700 0 320 0 0 700 180 0 0 0 1 0\nP1: 700 0 320 -350 0 700 180 0 0 0 1 0\n"
+          "P2: 700 0 320 70 0 700 180 0 0 0 1 0\nP3: 700 0 320 -280 0 700 180 0 0 0 1 0\n"
+          "R_rect 1 0 0 0 1 0 0 0 1\nTr_velo_cam 0 -1 0 0 0 0 -1 0 1 0 0 -0.5\n"
+          "Tr_imu_velo 1 0 0 -1.5 0 1 0 0 0 0 1 0\n");
+    // 3 m east, then a turn to the left on the spot.
+    const double degree_m = 6378137 * std::cos(60 * M_PI / 180) * M_PI / 180;
+    Write("training/oxts/0013.txt", OxtsRow(60, 8, 100, 0) +
+                                        OxtsRow(60, 8 + 3 / degree_m, 100.5, 0) +
+                                        OxtsRow(60, 8 + 3 / degree_m, 100.5, M_PI / 2));
+  }
+  std::string Sequence() const { return Path("training/image_02/0013"); }
+  std::string Message() const {
+    return MessageOf([&] { OpenStereoSequence(Sequence()); });
+  }
+};
+
+TEST_F(KittiTrackingTest, GroundTruthIsThatOfTheLeftColourCamera) {
+  const auto sequence = OpenStereoSequence(Sequence() + "/");
+  EXPECT_EQ(sequence->num_frames(), 3u);
+  EXPECT_DOUBLE_EQ(sequence->camera().baseline_m, 0.5);
+  EXPECT_EQ(sequence->camera().fx_px, 700);
+  EXPECT_EQ(sequence->ground_truth_axes(), TrajectoryAxes::kOptical);
+  EXPECT_FALSE(sequence->has_people());
+  EXPECT_EQ(sequence->Load(2).utime, 200000);
+  EXPECT_NEAR(sequence->Load(0).ground_truth->translation.norm(), 0, 1e-9);
+  // 3 m forward and half a metre up.
+  const Se3 ahead = *sequence->Load(1).ground_truth;
+  EXPECT_NEAR((ahead.translation - Eigen::Vector3d(0, -0.5, 3)).norm(), 0, 1e-6);
+  // The camera was 2 m ahead of the unit and 0.1 m left of its x axis: a turn to the left brings it
+  // 2 m to the left and 2 m back, and 0.1 m further back.
+  const Se3 turned = *sequence->Load(2).ground_truth;
+  EXPECT_NEAR((turned.translation - ahead.translation - Eigen::Vector3d(-1.9, 0, -2.1)).norm(), 0,
+              1e-6)
+      << turned.translation.transpose();
+  EXPECT_NEAR((turned.rotation * Eigen::Vector3d::UnitZ() + Eigen::Vector3d::UnitX()).norm(), 0,
+              1e-9);
+}
+
+TEST_F(KittiTrackingTest, ReadsPeopleAndOtherNamesOfTransforms) {
+  Write("training/alphapose_0/0013/000001.txt", PersonRow(1));
+  Write("training/alphapose_1/0013/000001.txt", PersonRow(1));
+  WriteImage("training/rcnnseg_image_0/0013/000001.png", 640, 360);
+  Write("training/calib/0013.txt",
+        "P2: 700 0 320 70 0 700 180 0 0 0 1 0\nP3: 700 0 320 -280 0 700 180 0 0 0 1 0\n"
+        "R0_rect: 1 0 0 0 1 0 0 0 1\nTr_velo_to_cam: 0 -1 0 0 0 0 -1 0 1 0 0 -0.5\n"
+        "Tr_imu_to_velo: 1 0 0 -1.5 0 1 0 0 0 0 1 0\n");
+  const auto sequence = OpenStereoSequence(Sequence());
+  EXPECT_TRUE(sequence->has_people());
+  EXPECT_TRUE(sequence->Load(0).keypoints_left.empty());
+  EXPECT_EQ(sequence->Load(1).keypoints_right.size(), 1u);
+  EXPECT_FALSE(sequence->Load(1).person_mask_file.empty());
+  EXPECT_NEAR(sequence->Load(1).ground_truth->translation.z(), 3, 1e-6);
+}
+
+TEST_F(KittiTrackingTest, SaysWhereTheGroundTruthIsMissing) {
+  fs::remove(Path("training/oxts/0013.txt"));
+  auto sequence = OpenStereoSequence(Sequence());
+  EXPECT_FALSE(sequence->Load(1).ground_truth);
+  EXPECT_NE(sequence->notes().back().find("oxts/0013.txt is not there"), std::string::npos);
+  Write("training/oxts/0013.txt", OxtsRow(60, 8, 100, 0));
+  sequence = OpenStereoSequence(Sequence());
+  EXPECT_NE(sequence->notes().back().find("holds 1 records for 3 images"), std::string::npos);
+  EXPECT_FALSE(sequence->Load(1).ground_truth);
+  Write("training/calib/0013.txt",
+        "P2: 700 0 320 70 0 700 180 0 0 0 1 0\nP3: 700 0 320 -280 0 700 180 0 0 0 1 0\n");
+  EXPECT_FALSE(OpenStereoSequence(Sequence())->Load(0).ground_truth);
+}
+
+TEST_F(KittiTrackingTest, NamesWhatIsWrong) {
+  Write("training/oxts/0013.txt", "60 8 100 0 0 0\n");
+  EXPECT_EQ(Message(), Path("training/oxts/0013.txt") + ":1: must hold 30 numbers (OXTS), holds 6");
+  Write("training/oxts/0013.txt", OxtsRow(95, 8, 100, 0));
+  EXPECT_NE(Message().find("oxts/0013.txt:1: latitude"), std::string::npos) << Message();
+  Write("training/calib/0013.txt", "P2: 700 0 320 70 0 700 180 0 0 0 1 0\n");
+  EXPECT_EQ(Message(), Path("training/calib/0013.txt") + ": has no line P3");
+  Write("training/calib/0013.txt",
+        "P2: 700 0 320 70 0 700 180 0 0 0 1 0\nP3: 700 0 320 -280 0 700 180 0 0 0 1 0\n"
+        "R_rect 1 0 0 0 1 0 0 0 2\n");
+  EXPECT_NE(Message().find("calib/0013.txt:3: is no rotation"), std::string::npos) << Message();
 }
 
 // The sequences that the project is measured on.

@@ -1,0 +1,31 @@
+#ifndef AIRDOS_COMMON_DATASET_KITTI_CALIBRATION_H_
+#define AIRDOS_COMMON_DATASET_KITTI_CALIBRATION_H_
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/geometry/stereo_camera.h"
+#include "common/util/text_file.h"
+
+namespace airdos {
+
+/// A 3 x 4 projection matrix (px, px m), row major, and where it stands.
+struct KittiProjection {
+  int line = 0;
+  std::vector<double> p;
+};
+
+/// The twelve numbers of a line from word `first_word` on. Throws InputError naming the line where
+/// they are not twelve.
+KittiProjection ParseProjection(const std::string& path, const TextLine& line,
+                                std::size_t first_word);
+
+/// The pair that two projections make for images of `size` (width, height in px). Throws InputError
+/// naming the line where they are none.
+StereoCamera MakeStereoCamera(const std::string& path, const KittiProjection& left,
+                              const KittiProjection& right, std::pair<int, int> size);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_DATASET_KITTI_CALIBRATION_H_

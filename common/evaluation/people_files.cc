@@ -1,0 +1,97 @@
+#include "common/evaluation/people_files.h"
+
+#include <zlib.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "common/human/skeleton.h"
+#include "common/util/error.h"
+
+namespace airdos {
+namespace {
+
+using nlohmann::json;
+
+Joints ParseJoints(const json& object) {
+  Joints joints;
+  for (const auto& [key, place] : object.items()) {
+    const int id = std::stoi(key);
+    if (id >= kNumJoints) continue;  // of the face
+    joints[id] = Eigen::Vector3d(place.at(0).get<double>(), place.at(1).get<double>(),
+                                 place.at(2).get<double>());
+  }
+  return joints;
+}
+
+/// A file, unpacked if it is of gzip.
+std::string ReadUnpacked(const std::string& path) {
+  const gzFile file = gzopen(path.c_str(), "rb");
+  if (file == nullptr) throw InputError(path + ": cannot be read");
+  std::string text;
+  char buffer[1 << 16];
+  int size = 0;
+  while ((size = gzread(file, buffer, sizeof buffer)) > 0) {
+    text.append(buffer, static_cast<std::size_t>(size));
+  }
+  gzclose(file);
+  if (size < 0) throw InputError(path + ": cannot be unpacked");
+  return text;
+}
+
+std::optional<int> CountVisible(const json& human, const char* key) {
+  if (!human.contains(key)) return std::nullopt;
+  int count = 0;
+  for (const json& visibility : human.at(key)) count += visibility.get<int>() > 0 ? 1 : 0;
+  return count;
+}
+
+}  // namespace
+
+std::vector<PersonState> ReadPeople(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw InputError(path + ": cannot be read");
+  std::vector<PersonState> states;
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    try {
+      const json object = json::parse(line);
+      PersonState state;
+      state.time_s = 1e-6 * object.at("utime").get<double>();
+      state.track = object.at("track");
+      state.joints_W = ParseJoints(object.at("joints"));
+      state.measured_W = ParseJoints(object.at("measured"));
+      for (const auto& [key, length_m] : object.at("segment_lengths_m").items()) {
+        state.segment_length_m[std::stoi(key)] = length_m;
+      }
+      states.push_back(std::move(state));
+    } catch (const std::exception& error) {
+      throw InputError(path + ":" + std::to_string(number) + ": " + error.what());
+    }
+  }
+  return states;
+}
+
+std::vector<TruePeople> ReadTruePeople(const std::string& path) {
+  const std::string text = ReadUnpacked(path);
+  std::vector<TruePeople> frames;
+  try {
+    for (const json& object : json::parse(text)) {
+      TruePeople frame;
+      frame.time_s = object.at("t");
+      for (const json& human : object.at("humans")) {
+        TruePersonState& person = frame.people[human.at("id")];
+        person.joints = ParseJoints(human.at("joints_w"));
+        person.num_visible_left = CountVisible(human, "vis0");
+        person.num_visible_right = CountVisible(human, "vis1");
+      }
+      frames.push_back(std::move(frame));
+    }
+  } catch (const std::exception& error) {
+    throw InputError(path + ": " + error.what());
+  }
+  return frames;
+}
+
+}  // namespace airdos

@@ -1,0 +1,116 @@
+#!/bin/bash
+# How much luck a figure is: each sequence once as configured and five times with one setting changed, in each mode. Prints
+# a row a run, then the median and the worst ATE of each sequence and mode (Markdown).
+#
+# Usage: launch_scripts/benchmark_perturbed.sh FOLDER… [--modes "mask_only on"] [--jobs N] [--run-dir FOLDER] [--set P:S.K=V]…
+#   FOLDER…           sequences, each in a layout that airdos-replay knows
+#   --modes LIST      of off, mask_only, on (default: mask_only and on)
+#   --jobs N          runs at a time (default: as many as there are cores)
+#   --run-dir FOLDER  where everything goes (default logs/runs/perturbed): runs.jsonl and a folder a run
+#   --set P:S.K=V     of airdos-replay: another value in process P's configuration, in all runs (again for more)
+#   --help            this text
+#
+# The perturbations (the frontend's settings; as configured: threshold 8, dilation 8, 300 features):
+#   fast_7, fast_10          features.fast_threshold, grey levels: other corners
+#   dilation_6, dilation_10  masks.dilation_px: other features near people
+#   features_250             tracking.max_observations: fewer features a frame
+# ATE: root mean square after SE(3) alignment without scale, over all frames. Lost: frames without a pose, or whose step is
+# wrong by more than 0.10 m or 2 degrees.
+set -euo pipefail
+# shellcheck source=launch_scripts/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+# shellcheck source=launch_scripts/benchmark_common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
+
+readonly variants='plain fast_7 fast_10 dilation_6 dilation_10 features_250'
+declare -A setting_of=(
+  [fast_7]=features.fast_threshold=7
+  [fast_10]=features.fast_threshold=10
+  [dilation_6]=masks.dilation_px=6
+  [dilation_10]=masks.dilation_px=10
+  [features_250]=tracking.max_observations=250
+)
+
+modes='mask_only on' run_dir=$AIRDOS_RUNS/perturbed jobs=$(num_cores)
+folders=() replay_options=()
+while (($# > 0)); do
+  case $1 in
+    --modes | --jobs | --run-dir)
+      need_value "$@"
+      name=${1#--}
+      printf -v "${name//-/_}" '%s' "$2"
+      shift
+      ;;
+    --set)
+      need_value "$@"
+      replay_options+=(--set "$2")
+      shift
+      ;;
+    --help | -h)
+      print_help
+      exit 0
+      ;;
+    -*) die_usage "unknown option '$1' (see --help)" ;;
+    *) folders+=("${1%/}") ;;
+  esac
+  shift
+done
+need_number --jobs "$jobs"
+need_modes "$modes"
+need_sequences "${folders[@]}"
+need_benchmark_programs
+
+# run_of FOLDER MODE VARIANT: the folder of that run.
+run_of() { echo "$run_dir/$(basename "$1")/$2/$3"; }
+
+# run_one FOLDER MODE VARIANT: leaves the row of runs.jsonl in the run's folder. A failing estimate may be too bad to tell
+# the axes of the ground truth: they come from the plain run with masks.
+run_one() {
+  local folder=$1 mode=$2 variant=$3 name run reference axes=auto options=("${replay_options[@]}")
+  name=$(basename "$folder")
+  run=$(run_of "$folder" "$mode" "$variant")
+  reference=$(run_of "$folder" mask_only plain)
+  [[ -z ${setting_of[$variant]:-} ]] || options+=(--set "frontend:${setting_of[$variant]}")
+  [[ $run == "$reference" ]] || axes=$(axes_of "$reference/evaluation.json")
+  replay_sequence "$name, $mode, $variant" "$folder" "$run" --people "$mode" "${options[@]}"
+  evaluate_run "$name, $mode, $variant" "$run" --gt-axes "$axes"
+  jq -c --arg sequence "$name" --arg mode "$mode" --arg variant "$variant" '{
+      sequence: $sequence, mode: $mode, variant: $variant, frames, frames_lost, poses_matched,
+      ate_m: .ate_se3_m.rmse, rpe_rmse_m: .rpe_translation_per_frame_m.rmse
+    }' "$run/evaluation.json" > "$run/row.json"
+}
+
+mkdir -p "$run_dir"
+trap end_jobs EXIT
+for folder in "${folders[@]}"; do start_job "$jobs" run_one "$folder" mask_only plain; done
+finish_jobs
+rows=()
+for folder in "${folders[@]}"; do
+  for mode in $modes; do
+    for variant in $variants; do
+      rows+=("$(run_of "$folder" "$mode" "$variant")/row.json")
+      [[ $mode-$variant == mask_only-plain ]] || start_job "$jobs" run_one "$folder" "$mode" "$variant"
+    done
+  done
+done
+finish_jobs
+cat "${rows[@]}" > "$run_dir/runs.jsonl"
+
+echo '| sequence | people | run | frames posed | lost | ATE m | RPE m |'
+echo '|---|---|---|---|---|---|---|'
+jq -r '[.sequence, .mode, .variant, .poses_matched, .frames, .frames_lost, .ate_m, .rpe_rmse_m] | @tsv' \
+  "$run_dir/runs.jsonl" |
+  while IFS=$'\t' read -r name mode variant posed frames lost ate rpe; do
+    printf '| %s | %s | %s | %d / %d | %d | %.4f | %.4f |\n' "$name" "$mode" "$variant" "$posed" "$frames" "$lost" "$ate" "$rpe"
+  done
+echo
+echo '| sequence | people | median ATE m | worst ATE m | worst run | most frames lost |'
+echo '|---|---|---|---|---|---|'
+jq -rs 'def median: sort | (.[(length - 1) / 2 | floor] + .[length / 2 | floor]) / 2;
+  group_by(.sequence, .mode)[] | max_by(.ate_m) as $worst
+  | [.[0].sequence, .[0].mode, (map(.ate_m) | median), $worst.ate_m, $worst.variant, (map(.frames_lost) | max)]
+  | @tsv' "$run_dir/runs.jsonl" |
+  while IFS=$'\t' read -r name mode median worst variant lost; do
+    printf '| %s | %s | %.4f | %.4f | %s | %d |\n' "$name" "$mode" "$median" "$worst" "$variant" "$lost"
+  done
+say "all figures: $run_dir/runs.jsonl"

@@ -1,0 +1,23 @@
+#ifndef AIRDOS_PROCESSES_TOOLS_EVALUATE_COMMAND_H_
+#define AIRDOS_PROCESSES_TOOLS_EVALUATE_COMMAND_H_
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace airdos {
+
+// The subcommands of airdos-evaluate. Each adds itself with its options and runs when it was given;
+// all throw InputError on what cannot be used.
+
+void AddTrajectoryCommand(CLI::App* app);
+void AddPeopleCommand(CLI::App* app);
+void AddCurveCommand(CLI::App* app);
+void AddAblationCommand(CLI::App* app);
+
+/// Writes a file of indented JSON. Throws InputError where it cannot be written.
+void WriteJson(const nlohmann::json& json, const std::string& path);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_TOOLS_EVALUATE_COMMAND_H_

@@ -1,0 +1,51 @@
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/evaluation/help_curve.h"
+#include "common/evaluation/help_curve_plot.h"
+#include "common/evaluation/trajectory_plot.h"
+#include "common/util/error.h"
+#include "processes/tools/evaluate_command.h"
+
+namespace airdos {
+namespace {
+
+struct CurveArguments {
+  std::string runs;
+  std::string json;
+  std::string plot;
+};
+
+void RunCurve(const CurveArguments& arguments) {
+  std::vector<CappedRun> runs = ReadCappedRuns(arguments.runs);
+  HelpCurve curve;
+  try {
+    curve = ComputeHelpCurve(std::move(runs));
+  } catch (const InputError& error) {
+    throw InputError(arguments.runs + ": " + error.what());
+  }
+  std::fputs(ToMarkdown(curve).c_str(), stdout);
+  if (!arguments.json.empty()) WriteJson(ToJson(curve), arguments.json);
+  if (!arguments.plot.empty()) WritePng(DrawHelpCurve(curve), arguments.plot);
+}
+
+}  // namespace
+
+void AddCurveCommand(CLI::App* app) {
+  const auto arguments = std::make_shared<CurveArguments>();
+  CLI::App* const command = app->add_subcommand(
+      "curve", "When people help: errors against the number of static features");
+  command
+      ->add_option("--runs", arguments->runs,
+                   "JSON lines as launch_scripts/benchmark_people_help.sh writes them, one a run")
+      ->required();
+  command->add_option("--json", arguments->json, "file to write all figures to");
+  command->add_option("--plot", arguments->plot, "PNG file to draw the curve into");
+  command->callback([arguments] { RunCurve(*arguments); });
+}
+
+}  // namespace airdos

@@ -1,0 +1,79 @@
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "common/evaluation/trajectory_plot.h"
+#include "common/evaluation/trajectory_report.h"
+#include "processes/tools/evaluate_command.h"
+
+namespace airdos {
+namespace {
+
+struct TrajectoryArguments {
+  std::string estimate;
+  std::string ground_truth;
+  std::string times;
+  std::string axes = "auto";
+  double max_difference_s = 0.01;
+  std::size_t num_frames = 0;
+  std::string json;
+  std::string plot;
+};
+
+void RunTrajectory(const TrajectoryArguments& arguments) {
+  Trajectory estimate = ReadTrajectory(arguments.estimate);
+  Trajectory ground_truth = ReadTrajectory(arguments.ground_truth);
+  if (!arguments.times.empty()) {
+    if (!estimate.has_times) SetTimes(arguments.times, &estimate);
+    if (!ground_truth.has_times) SetTimes(arguments.times, &ground_truth);
+  }
+  EvaluationOptions options;
+  options.max_time_difference_s = arguments.max_difference_s;
+  options.num_frames = arguments.num_frames;
+  if (arguments.axes != "auto") options.axes = GroundTruthAxes::Parse(arguments.axes);
+  const TrajectoryReport report = EvaluateTrajectory(estimate, ground_truth, options);
+  std::fputs(ToTable(report).c_str(), stdout);
+  if (!arguments.json.empty()) {
+    nlohmann::json json = ToJson(report);
+    json["estimate"] = arguments.estimate;
+    json["ground_truth"] = arguments.ground_truth;
+    WriteJson(json, arguments.json);
+  }
+  if (!arguments.plot.empty()) {
+    WritePng(DrawEvaluation(report, arguments.estimate), arguments.plot);
+  }
+}
+
+}  // namespace
+
+void AddTrajectoryCommand(CLI::App* app) {
+  const auto arguments = std::make_shared<TrajectoryArguments>();
+  CLI::App* const command = app->add_subcommand("trajectory", "Errors of a camera trajectory");
+  command->add_option("--estimate", arguments->estimate, "TUM or KITTI file, optical axes")
+      ->required();
+  command->add_option("--ground-truth", arguments->ground_truth, "TUM or KITTI file")->required();
+  command->add_option("--times", arguments->times,
+                      "times (s) of the rows of a KITTI file, one a line, to compare it with TUM");
+  command
+      ->add_option(
+          "--gt-axes", arguments->axes,
+          "axes of the ground truth: optical, ned, where right, down and forward lie (such "
+          "as y,-z,x), or auto: compares motions with the estimate's")
+      ->check([](const std::string& text) -> std::string {
+        if (text == "auto" || GroundTruthAxes::Parse(text)) return "";
+        return "'" + text + "' is none of auto, optical, ned, three axes such as y,-z,x";
+      })
+      ->capture_default_str();
+  command->add_option("--max-diff", arguments->max_difference_s, "largest time difference (s)")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--frames", arguments->num_frames,
+                      "images of the sequence, for the completeness (default: as many as the "
+                      "ground truth has poses)");
+  command->add_option("--json", arguments->json, "file to write all figures to");
+  command->add_option("--plot", arguments->plot, "PNG file to draw trajectories and errors into");
+  command->callback([arguments] { RunTrajectory(*arguments); });
+}
+
+}  // namespace airdos

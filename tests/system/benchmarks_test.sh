@@ -1,0 +1,179 @@
+#!/bin/bash
+# What the benchmark scripts do with wrong options, which runs they make of their sequences and how they put the figures
+# together (programs that write down how they were called stand in for ours).
+# Usage: benchmarks_test.sh SOURCE_DIR
+set -euo pipefail
+
+readonly scripts=$1/launch_scripts
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+fail() {
+  echo "FAILED: $*"
+  exit 1
+}
+
+# expect CODE TEXT COMMAND…: the exit code; the last line on stderr (the only one, unless it worked) or stdout has the text.
+expect() {
+  local code=$1 text=$2 got=0
+  shift 2
+  "$@" > "$work/out" 2> "$work/err" < /dev/null || got=$?
+  ((got == code)) || fail "$*: exit code $got, not $code: $(cat "$work/out" "$work/err")"
+  if ((code == 2)); then
+    (($(wc -l < "$work/err") == 1)) || fail "$*: not one line: $(cat "$work/err")"
+  fi
+  grep -qF -e "$text" "$work/out" "$work/err" || fail "$*: '$(cat "$work/out" "$work/err")' does not say '$text'"
+}
+
+# says TEXT: on stdout or stderr of the last command.
+says() { grep -qF -e "$1" "$work/out" "$work/err" || fail "'$(cat "$work/out" "$work/err")' does not say '$1'"; }
+
+wrong_options_exit_2_in_one_line() {
+  local script
+  for script in sequences people_help perturbed shibuya kitti_tracking; do
+    expect 0 "Usage: launch_scripts/benchmark_$script.sh" "$scripts/benchmark_$script.sh" --help
+    expect 2 "--no-such-option" "$scripts/benchmark_$script.sh" --no-such-option
+    expect 2 "no folder '/nonexistent'" "$scripts/benchmark_$script.sh" /nonexistent
+    expect 2 "--run-dir needs a value" "$scripts/benchmark_$script.sh" "$work" --run-dir
+    expect 2 "(see --help)" "$scripts/benchmark_$script.sh"
+  done
+  for script in people_help perturbed shibuya kitti_tracking; do
+    expect 2 "--jobs: not a whole number above 0: '0'" "$scripts/benchmark_$script.sh" "$work" --jobs 0
+  done
+  for script in sequences perturbed shibuya kitti_tracking; do
+    expect 2 "--modes: 'full' is none of" "$scripts/benchmark_$script.sh" "$work" --modes 'on full'
+  done
+  expect 2 "--caps: not a whole number above 0: 'x'" "$scripts/benchmark_people_help.sh" "$work" --caps '3 x'
+  mkdir -p "$work/a/same" "$work/b/same"
+  expect 2 "two sequences have the name 'same'" "$scripts/benchmark_perturbed.sh" "$work/a/same/" "$work/b/same"
+  expect 2 "more than one folder" "$scripts/benchmark_shibuya.sh" "$work/a" "$work/b"
+  expect 2 "holds no sequence" "$scripts/benchmark_shibuya.sh" "$work/a"
+  expect 2 "holds none of the sequences" "$scripts/benchmark_kitti_tracking.sh" "$work/a"
+}
+
+# Stand-ins: airdos-replay writes down its arguments; airdos-evaluate gives an ATE that depends on the run. A folder named
+# broken fails, and in one named tilted the axes cannot be told.
+make_programs() {
+  mkdir -p "$work/bin"
+  cat > "$work/bin/airdos-replay" << 'FAKE'
+#!/bin/bash
+echo "$*" >> "${0%/*}/../calls"
+[[ $1 != *broken* ]] || exit 1
+while (($# > 0)); do
+  if [[ $1 == --run-dir ]]; then run=$2; fi
+  shift
+done
+echo truth > "$run/ground_truth.tum"
+echo estimate > "$run/trajectory.tum"
+echo '{"processes": {"frontend": {"cpu_ms": {"mean": 1}}, "human_tracker": {"cpu_ms": {"mean": 2}}, "optimizer": {"cpu_ms": {"mean": 3}}}}' > "$run/timing.json"
+FAKE
+  cat > "$work/bin/airdos-evaluate" << 'FAKE'
+#!/bin/bash
+echo "evaluate $*" >> "${0%/*}/../calls"
+command=$1
+while (($# > 0)); do
+  case $1 in
+    --estimate) run=${2%/trajectory.tum} ;;
+    --json) json=$2 ;;
+    --gt-axes) axes=$2 ;;
+    --runs) runs=$2 ;;
+  esac
+  shift
+done
+if [[ $command == curve ]]; then
+  echo "curve of $(wc -l < "$runs") runs"
+  exit 0
+fi
+[[ $run != *tilted* || ${axes:-auto} != auto ]] || exit 2
+ate=0.01
+case $run in
+  *fast_7*) ate=0.05 ;;
+  *dilation_10*) ate=0.03 ;;
+esac
+cat > "$json" << JSON
+{"frames": 100, "frames_lost": 4, "poses_matched": 98, "poses_ground_truth": 100, "completeness": 0.98,
+ "ground_truth_axes": "y,-z,x", "ground_truth_right_handed": false,
+ "ground_truth_axes_alternatives": [{"axes": "NED", "right_handed": true, "ate_se3_m": {"rmse": 0.5}}],
+ "ate_se3_m": {"rmse": $ate}, "end_point_drift_percent": 1,
+ "rpe_translation_per_frame_m": {"rmse": 0.002, "median": 0.001}, "rpe_rotation_per_frame_deg": {"rmse": 0.2, "median": 0.1}}
+JSON
+FAKE
+  chmod +x "$work"/bin/*
+}
+
+# calls TEXT: how many calls of a program have it.
+calls() { grep -cF -e "$1" "$work/calls" || true; }
+
+# run SCRIPT ARGUMENT…: with the stand-ins, results in $work/run.
+run() {
+  local code=$1 script=$2
+  shift 2
+  rm -rf "$work/run" "$work/calls"
+  expect "$code" '' env AIRDOS_BIN="$work/bin" "$scripts/$script.sh" "$@" --run-dir "$work/run"
+}
+
+people_help_runs_each_cap_in_both_modes() {
+  run 0 benchmark_people_help "$work/sets/one" "$work/sets/two" --caps '3 uncapped' --jobs 3
+  says "curve of 8 runs"
+  (($(calls ' --set frontend:tracking.max_observations=3') == 4)) || fail "caps: $(cat "$work/calls")"
+  (($(calls '--people on') == 4)) || fail "modes: $(cat "$work/calls")"
+  (($(calls '--gt-axes y,-z,x') == 6)) || fail "the axes are not those of the uncapped run: $(cat "$work/calls")"
+  grep -qF '{"sequence":"one","mode":"on","max_observations":3,"frames":100,"frames_lost":4' "$work/run/runs.jsonl" ||
+    fail "rows: $(cat "$work/run/runs.jsonl")"
+  run 1 benchmark_people_help "$work/sets/one" "$work/sets/broken" --caps 3
+  says "broken, uncapped, mask_only: airdos-replay failed"
+}
+
+perturbed_gives_median_and_worst() {
+  run 0 benchmark_perturbed "$work/sets/one" --jobs 2
+  (($(calls 'sets/one') == 12)) || fail "runs: $(cat "$work/calls")"
+  (($(calls ' --set frontend:masks.dilation_px=6') == 2)) || fail "settings: $(cat "$work/calls")"
+  says "| one | on | dilation_10 | 98 / 100 | 4 | 0.0300 | 0.0020 |"
+  says "| one | on | 0.0100 | 0.0500 | fast_7 | 4 |"
+}
+
+shibuya_says_what_is_missing_failed_or_ambiguous() {
+  local base=$work/shibuya
+  mkdir -p "$base"/{Standing01,deep/road_crossing03,deep/RoadCrossing04_broken,tilted}/{image_0,image_1}
+  run 1 benchmark_shibuya "$base" --modes 'mask_only on' --jobs 2
+  says '| ATE m | Standing01 | Standing02 | RoadCrossing03 | RoadCrossing04 |'
+  says '| AirDOS, published | 0.0606 | 0.0193 |'
+  says '| ours, people on | 0.0100 (98 %) | missing | 0.0100 (98 %) | missing | missing | missing | missing | failed | failed |'
+  says "not in '$base': Standing02 RoadCrossing04 RoadCrossing05 RoadCrossing06 RoadCrossing07"
+  says '- Standing01: y,-z,x, left-handed; AMBIGUOUS, with masks this gives 0.01 m, but as well fit NED with 0.5 m'
+  says '- tilted: not found out'
+  says 'tilted, on: no figures, because the run with masks has none'
+  mkdir -p "$base/again/standing-01"/{image_0,image_1}
+  expect 2 "'Standing01' is there twice" env AIRDOS_BIN="$work/bin" "$scripts/benchmark_shibuya.sh" "$base"
+}
+
+kitti_tracking_takes_28_from_testing() {
+  local base=$work/kitti
+  mkdir -p "$base"/{testing/image_02/0028,training/image_02/0013,training/{alphapose_0,alphapose_1,rcnnseg_image_0}/0013}
+  run 0 benchmark_kitti_tracking "$base/" --modes on --jobs 2
+  says '| AirDOS, published | 0.934 | 2.027 | 1.618 | 0.172 | 0.234 | 2.760 |'
+  says '| ours, people on | missing | 0.010 (98 %) | 0.010 (98 %) | missing | missing | missing |'
+  says "not in '$base': testing/0018 training/0014 training/0015 training/0019"
+  says 'people change nothing: testing/alphapose_0/0028 testing/alphapose_1/0028 testing/rcnnseg_image_0/0028'
+  (($(calls "$base/testing/image_02/0028 --run-dir") == 1)) || fail "runs: $(cat "$work/calls")"
+}
+
+sequences_prints_a_row_a_run() {
+  run 0 benchmark_sequences "$work/sets/one" --modes mask_only
+  says '| one | mask_only | 98 / 100 | 0.0100 | 0.0020 | 0.2000 | 1.00 | 1 / 2 / 3 |'
+}
+
+command -v jq > /dev/null || {
+  echo "SKIPPED: no jq"
+  exit 77
+}
+mkdir -p "$work"/sets/{one,two,broken}
+make_programs
+export AIRDOS_BIN=$work/bin
+wrong_options_exit_2_in_one_line
+people_help_runs_each_cap_in_both_modes
+perturbed_gives_median_and_worst
+shibuya_says_what_is_missing_failed_or_ambiguous
+kitti_tracking_takes_28_from_testing
+sequences_prints_a_row_a_run
+echo "all checks passed"
