@@ -3,8 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <memory>
 #include <set>
@@ -134,26 +132,8 @@ OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoIm
     motion_.Update(prior, step_s, frame.T_W_C, estimate.information,
                    frame.state == TrackingState::kTracking);
   }
-  if (getenv("VODBG")) {
-    const Vector6d inn = Boxminus(frame.T_W_C, prior.T_W_C);
-    std::fprintf(stderr,
-                 "f %ld inl %d sight %zu matched %d hyp %d ppl %zu prior_t %.3f prior_r %.4f "
-                 "post_t %.4f inn_t %.3f inn_r %.4f vis %zu\n",
-                 (long)images.id.value, num_static_, frame.sightings.size(), frame.num_matched,
-                 best.num_inliers, people.size(),
-                 std::sqrt(prior.covariance.topLeftCorner<3, 3>().trace()),
-                 std::sqrt(prior.covariance.bottomRightCorner<3, 3>().trace()),
-                 std::sqrt(motion_.pose_covariance().topLeftCorner<3, 3>().trace()),
-                 inn.head<3>().norm(), inn.tail<3>().norm(), map_.landmarks().size());
-  }
   people_.Update(images.people, frame.T_W_C, motion_.pose_covariance());
   Remember(images.id, images.time_s, &frame);
-  if (getenv("VODBG")) {
-    const auto& t = frame.T_O_C.translation;
-    const auto& q = frame.T_O_C.rotation;
-    std::fprintf(stderr, "O %.6f %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", images.time_s, t.x(), t.y(),
-                 t.z(), q.x(), q.y(), q.z(), q.w());
-  }
   CreateLandmarks(view, frame.T_W_C, &frame.sightings);
   map_.Cull(images.id);
   return frame;
@@ -211,22 +191,14 @@ std::vector<PersonConstraint> VisualOdometry::Constraints(const StereoImagePair&
 
 VisualOdometry::Hypothesis VisualOdometry::FindBest(const View& view,
                                                     const PosePrior& prior) const {
-  Hypothesis best = TrackFrom(
-      view, prior.T_W_C, {SearchRadius(view.camera, prior), options_.wide_max_hamming, 0.9}, prior);
+  Hypothesis best = TrackFrom(view, prior.T_W_C,
+                              {options_.wide_radius_px, options_.wide_max_hamming, 0.9}, prior);
   if (const std::optional<Se3> relocated = Relocate(view)) {
     const Hypothesis other =
         TrackFrom(view, *relocated, {8, options_.narrow_max_hamming, 0.9}, std::nullopt);
     if (other.num_inliers > best.num_inliers) best = other;
   }
   return best;
-}
-
-double VisualOdometry::SearchRadius(const StereoCamera& camera, const PosePrior& prior) const {
-  constexpr double kSigmas = 2;
-  constexpr double kMaxGrowth = 1;
-  const double turn_rad = std::sqrt(prior.covariance.block<2, 2>(3, 3).trace() / 2);
-  return std::clamp(kSigmas * camera.fx_px * turn_rad, options_.wide_radius_px,
-                    kMaxGrowth * options_.wide_radius_px);
 }
 
 VisualOdometry::Hypothesis VisualOdometry::TrackFrom(const View& view, const Se3& start,

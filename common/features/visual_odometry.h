@@ -28,7 +28,7 @@ struct VisualOdometryOptions {
   int wide_max_hamming = 64;      ///< bits
   int narrow_max_hamming = 90;    ///< bits
   int min_inliers_tracking = 20;  ///< fewer: STATE_WEAK
-  int min_inliers_weak = 3;       ///< fewer: STATE_COASTING
+  int min_inliers_weak = 1;       ///< fewer: STATE_COASTING
   double min_correlation = 0.8;   ///< of a landmark's patch with the image
   double aligned_sigma_px = 0.2;  ///< of an aligned patch at level 0; grows with the level
   double corner_sigma_px = 0.7;   ///< of a corner whose patch did not align
@@ -111,8 +111,6 @@ class VisualOdometry {
   std::vector<PersonConstraint> Constraints(const StereoImagePair& images,
                                             const PosePrior& prior) const;
   Hypothesis FindBest(const View& view, const PosePrior& prior) const;
-  /// How far from its projection a landmark may be, px: the less is known of the turn, the farther.
-  double SearchRadius(const StereoCamera& camera, const PosePrior& prior) const;
   Hypothesis TrackFrom(const View& view, const Se3& start, const ProjectionSearch& first,
                        const std::optional<PosePrior>& prior) const;
   std::optional<Se3> Relocate(const View& view) const;

@@ -42,7 +42,7 @@ struct PeopleFilterOptions {
   double wobble_m = 0.03;        ///< of each joint against the body in 0.1 s
   double max_joint_sigmas = 4;   ///< a joint further off than that is left out
   int max_missed_frames = 5;     ///< then the person is forgotten
-  int min_seen_frames = 3;       ///< before a person says anything of the camera
+  int min_seen_frames = 1;       ///< before a person says anything of the camera
 };
 
 /// Where people will be. Each person is a filter of constant velocity in W: the body joints, each

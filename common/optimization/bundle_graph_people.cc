@@ -171,7 +171,10 @@ void BundleGraph::AddVelocities(const std::vector<Sighting>& sightings,
       velocities_.push_back(MeanStep(pairs) / step_s);
       velocity = velocities_.back().data();
       people_blocks_.push_back(velocity);
-      if (velocity_before != nullptr) {
+      if (velocity_before == nullptr && options_.person_speed_m_s > 0) {
+        ceres_problem_.AddResidualBlock(new VelocityPriorFactor(options_.person_speed_m_s),
+                                        smoothness_loss_.get(), velocity);
+      } else if (velocity_before != nullptr) {
         const double sigma_m_s = noise.acceleration_m_s2 * 0.5 * (step_s + step_before_s);
         ceres_problem_.AddResidualBlock(new VelocitySmoothnessFactor(sigma_m_s),
                                         smoothness_loss_.get(), velocity_before, velocity);

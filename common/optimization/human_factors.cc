@@ -56,6 +56,14 @@ bool VelocitySmoothnessFactor::Evaluate(double const* const* parameters, double*
   return true;
 }
 
+bool VelocityPriorFactor::Evaluate(double const* const* parameters, double* residuals,
+                                   double** jacobians) const {
+  Point r(residuals);
+  r = weight_ * ConstPoint(parameters[0]);
+  SetScaledIdentity(jacobians, 0, weight_);
+  return true;
+}
+
 bool PartMotionFactor::Evaluate(double const* const* parameters, double* residuals,
                                 double** jacobians) const {
   const Se3 motion = FromPoseBlock(parameters[2]);

@@ -94,6 +94,22 @@ class PartSmoothnessFactor final
   double weight_angular_;
 };
 
+/// How fast people are, for the first velocity of a track: without it a camera that sees nothing
+/// but people could move along with all of them at any speed.
+///
+///   r = v / sigma
+///
+/// Block: v (3), m/s, in W.
+class VelocityPriorFactor final : public ceres::SizedCostFunction<3, 3> {
+ public:
+  explicit VelocityPriorFactor(double sigma_m_s) : weight_(1 / sigma_m_s) {}
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  double weight_;
+};
+
 /// Motion of a joint as one rigid motion (R, t) per rigid part and frame pair (paper, eq. 4, 5),
 /// about the part's centroid c so that R and t do not trade against each other far from the origin:
 ///

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
+#include "common/human/body_mask.h"
 #include "processes/node/image_codec.h"
+#include "processes/node/keypoint_messages.h"
 
 namespace airdos {
 namespace {
@@ -69,6 +71,7 @@ FrontendNode::FrontendNode(const FrontendOptions& options)
   Join<image_t>(channel::kCameraRight, &FrontendInputs::right);
   if (options_.use_people) {
     Join<human_observations_t>(channel::kHumanObservations, &FrontendInputs::humans);
+    Join<person_keypoints_t>(channel::kPersonKeypointsLeft, &FrontendInputs::keypoints);
   }
   if (options_.use_masks) Join<person_mask_t>(channel::kPersonMask, &FrontendInputs::mask);
   JoinCalibration();
@@ -155,33 +158,42 @@ std::vector<PersonMeasurement> FrontendNode::People(const FrontendInputs& inputs
   return people;
 }
 
+bool FrontendNode::Fits(const std::optional<cv::Mat>& image, const char* channel) {
+  if (image && image->size() == cv::Size(camera().width, camera().height)) return true;
+  ++counters(channel).num_rejected;
+  counters(channel).last_reject =
+      image ? "its size is not that of the calibration" : "the image does not decode";
+  return false;
+}
+
+cv::Mat FrontendNode::Mask(const FrontendInputs& inputs) {
+  cv::Mat mask;
+  if (inputs.mask && inputs.mask->encoding != person_mask_t::ENCODING_NONE) {
+    const std::optional<cv::Mat> decoded = DecodeMask(*inputs.mask);
+    if (Fits(decoded, channel::kPersonMask)) mask = *decoded;
+  }
+  if (mask.empty() && inputs.keypoints) {
+    mask = DrawBodyMask(ToPeople(*inputs.keypoints), {camera().width, camera().height},
+                        options_.min_keypoint_confidence);
+  }
+  if (mask.empty()) return mask;
+  const int diameter = 2 * options_.mask_dilation_px + 1;
+  cv::dilate(mask, mask, cv::getStructuringElement(cv::MORPH_ELLIPSE, {diameter, diameter}));
+  return mask;
+}
+
 std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
                                                     const FrontendInputs& inputs) {
   if (!inputs.left || !inputs.right) return std::nullopt;
   const std::optional<cv::Mat> left = DecodeGray(*inputs.left);
   const std::optional<cv::Mat> right = DecodeGray(*inputs.right);
-  const cv::Size size(camera().width, camera().height);
-  const auto fits = [&](const std::optional<cv::Mat>& image, const char* channel) {
-    if (image && image->size() == size) return true;
-    ++counters(channel).num_rejected;
-    counters(channel).last_reject =
-        image ? "its size is not that of the calibration" : "the image does not decode";
-    return false;
-  };
-  if (!fits(left, channel::kCameraLeft) || !fits(right, channel::kCameraRight)) return std::nullopt;
-  StereoImagePair images{FrameId{header.seq},
+  if (!Fits(left, channel::kCameraLeft) || !Fits(right, channel::kCameraRight)) return std::nullopt;
+  return StereoImagePair{FrameId{header.seq},
                          static_cast<double>(header.utime - first_.utime) * 1e-6,
                          *left,
                          *right,
-                         {},
+                         Mask(inputs),
                          People(inputs)};
-  if (!inputs.mask || inputs.mask->encoding == person_mask_t::ENCODING_NONE) return images;
-  const std::optional<cv::Mat> mask = DecodeMask(*inputs.mask);
-  if (!fits(mask, channel::kPersonMask)) return images;
-  const int diameter = 2 * options_.mask_dilation_px + 1;
-  cv::dilate(*mask, images.mask,
-             cv::getStructuringElement(cv::MORPH_ELLIPSE, {diameter, diameter}));
-  return images;
 }
 
 void FrontendNode::ProcessFrame(const Header& header, FrontendInputs inputs) {
@@ -236,6 +248,7 @@ FrontendOptions ReadFrontendOptions(ConfigReader* config) {
   config->Read("motion.initial_turn_rad_s", &odometry.motion.initial_turn_rad_s, 1e-3, 1000);
   config->Read("motion.memory_s", &odometry.motion.memory_s, 0.01, 1e6);
   config->Read("people.use", &options.use_people);
+  config->Read("people.min_keypoint_confidence", &options.min_keypoint_confidence, 0, 1);
   config->Read("people.max_static", &odometry.max_static_for_people, 0, 10000);
   config->Read("people.acceleration_m_s2", &odometry.people.acceleration_m_s2, 1e-3, 100);
   config->Read("people.initial_speed_m_s", &odometry.people.initial_speed_m_s, 1e-3, 100);

@@ -12,6 +12,7 @@
 #include "airdos/human_observations_t.hpp"
 #include "airdos/image_t.hpp"
 #include "airdos/map_update_t.hpp"
+#include "airdos/person_keypoints_t.hpp"
 #include "airdos/person_mask_t.hpp"
 #include "airdos/static_features_t.hpp"
 #include "common/config/config_reader.h"
@@ -23,7 +24,8 @@ namespace airdos {
 struct FrontendOptions {
   VisualOdometryOptions odometry;
   bool use_masks = true;
-  bool use_people = true;  ///< in the pose of a frame that sees little else
+  bool use_people = true;                ///< in the pose of a frame that sees little else
+  double min_keypoint_confidence = 0.1;  ///< of joints that mark where people are without a mask
   int mask_dilation_px =
       8;  ///< masks are ragged: a border of so many px around people is left out as well
   /// MAP_UPDATE of the frame so many frames back must be there before a frame starts; 0 = no
@@ -38,12 +40,14 @@ struct FrontendInputs {
   std::optional<image_t> right;
   std::optional<person_mask_t> mask;
   std::optional<human_observations_t> humans;
+  std::optional<person_keypoints_t> keypoints;
 };
 
 /// Static landmarks and camera pose from stereo images: CAMERA_LEFT, CAMERA_RIGHT, CALIBRATION,
-/// PERSON_MASK (if masks are used), HUMAN_OBSERVATIONS (if people are used) and MAP_UPDATE in,
-/// STATIC_FEATURES out. The optimizer's corrections are applied at a fixed lag of frames, so that
-/// the result does not depend on how fast the optimizer is. A frame without both images coasts.
+/// PERSON_MASK (if masks are used), HUMAN_OBSERVATIONS and PERSON_KEYPOINTS_LEFT (if people are
+/// used) and MAP_UPDATE in, STATIC_FEATURES out. The optimizer's corrections are applied at a fixed
+/// lag of frames, so that the result does not depend on how fast the optimizer is. A frame without
+/// both images coasts.
 class FrontendNode : public FrameNode<FrontendInputs> {
  public:
   explicit FrontendNode(const FrontendOptions& options);
@@ -59,6 +63,9 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   std::optional<std::int64_t> RequiredUpdate() const;
   void ApplyUpdates();
   static std::vector<PersonMeasurement> People(const FrontendInputs& inputs);
+  bool Fits(const std::optional<cv::Mat>& image, const char* channel);
+  /// Where people are, from masks, or else from keypoints; empty if nothing says.
+  cv::Mat Mask(const FrontendInputs& inputs);
   std::optional<StereoImagePair> Images(const Header& header, const FrontendInputs& inputs);
 
   const FrontendOptions options_;

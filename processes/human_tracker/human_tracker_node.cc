@@ -5,42 +5,15 @@
 #include <utility>
 #include <vector>
 
-#include "common/human/layouts.h"
 #include "processes/node/channels.h"
 #include "processes/node/image_codec.h"
+#include "processes/node/keypoint_messages.h"
 
 namespace airdos {
 namespace {
 
-std::optional<KeypointLayout> ToLayout(int layout) {
-  switch (layout) {
-    case person_keypoints_t::LAYOUT_COCO18:
-      return KeypointLayout::kCoco18;
-    case person_keypoints_t::LAYOUT_COCO17:
-      return KeypointLayout::kCoco17;
-    case person_keypoints_t::LAYOUT_HALPE26:
-      return KeypointLayout::kHalpe26;
-    default:
-      return std::nullopt;
-  }
-}
-
-// The message has passed Validate(): the arrays are as long as its counts say.
-std::vector<BodyKeypoints> ToPeople(const std::optional<person_keypoints_t>& message) {
-  std::vector<BodyKeypoints> people;
-  if (!message) return people;
-  const std::optional<KeypointLayout> layout = ToLayout(message->layout);
-  if (!layout) return people;
-  for (std::size_t person = 0; person < message->u_px.size(); ++person) {
-    std::vector<BodyKeypoint> keypoints;
-    for (std::size_t joint = 0; joint < message->u_px[person].size(); ++joint) {
-      keypoints.push_back({message->u_px[person][joint], message->v_px[person][joint],
-                           message->confidence[person][joint]});
-    }
-    const std::optional<BodyKeypoints> body = MapToBody(*layout, keypoints);
-    if (body) people.push_back(*body);
-  }
-  return people;
+std::vector<BodyKeypoints> PeopleOf(const std::optional<person_keypoints_t>& message) {
+  return message ? ToPeople(*message) : std::vector<BodyKeypoints>();
 }
 
 human_observation_t ToMessage(const TrackedHuman& human) {
@@ -100,8 +73,8 @@ void HumanTrackerNode::ProcessFrame(const Header& header, HumanTrackerInputs inp
   if (inputs.right_image) {
     frame.right_gray = DecodeGray(*inputs.right_image).value_or(cv::Mat());
   }
-  frame.left = ToPeople(inputs.left_keypoints);
-  frame.right = ToPeople(inputs.right_keypoints);
+  frame.left = PeopleOf(inputs.left_keypoints);
+  frame.right = PeopleOf(inputs.right_keypoints);
 
   const TrackedFrame tracked = tracker_->Process(camera(), frame);
 

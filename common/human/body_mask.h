@@ -1,0 +1,20 @@
+#ifndef AIRDOS_COMMON_HUMAN_BODY_MASK_H_
+#define AIRDOS_COMMON_HUMAN_BODY_MASK_H_
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "common/human/body_keypoints.h"
+
+namespace airdos {
+
+/// Where people are in an image, as far as their joints tell: limbs and trunk as thick lines, the
+/// trunk filled, the head a disc, all as thick as a person of that size is, clothes included.
+/// CV_8UC1 of `size`, 255 on people, 0 elsewhere. Joints of less than `min_confidence` do not
+/// count; a person of fewer than three others is left out.
+cv::Mat DrawBodyMask(const std::vector<BodyKeypoints>& people, const cv::Size& size,
+                     double min_confidence);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_HUMAN_BODY_MASK_H_

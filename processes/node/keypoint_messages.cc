@@ -1,0 +1,42 @@
+#include "processes/node/keypoint_messages.h"
+
+#include <cstddef>
+#include <optional>
+
+#include "common/human/layouts.h"
+
+namespace airdos {
+namespace {
+
+std::optional<KeypointLayout> ToLayout(int layout) {
+  switch (layout) {
+    case person_keypoints_t::LAYOUT_COCO18:
+      return KeypointLayout::kCoco18;
+    case person_keypoints_t::LAYOUT_COCO17:
+      return KeypointLayout::kCoco17;
+    case person_keypoints_t::LAYOUT_HALPE26:
+      return KeypointLayout::kHalpe26;
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::vector<BodyKeypoints> ToPeople(const person_keypoints_t& message) {
+  std::vector<BodyKeypoints> people;
+  const std::optional<KeypointLayout> layout = ToLayout(message.layout);
+  if (!layout) return people;
+  for (std::size_t person = 0; person < message.u_px.size(); ++person) {
+    std::vector<BodyKeypoint> keypoints;
+    for (std::size_t joint = 0; joint < message.u_px[person].size(); ++joint) {
+      keypoints.push_back({message.u_px[person][joint], message.v_px[person][joint],
+                           message.confidence[person][joint]});
+    }
+    const std::optional<BodyKeypoints> body = MapToBody(*layout, keypoints);
+    if (body) people.push_back(*body);
+  }
+  return people;
+}
+
+}  // namespace airdos
