@@ -10,11 +10,12 @@ namespace airdos {
 struct TrackNoiseOptions {
   /// What a track is taken for as long as it says nothing itself, and how far tracks differ from
   /// it: the sigma of the logarithm of each value.
-  MotionNoise prior{0.03, 1.0, 1.0};
+  MotionNoise prior{0.03, 3.0, 1.0};
   double prior_log_sigma = 1.0;
   /// Uncertainty of the camera from frame to frame that the track is seen from: standard deviation
-  /// of the track's centre, per axis.
-  double camera_sigma_m = 0.01;
+  /// of the track's centre, per axis. At 0 what the camera errs counts as the person's doing, which
+  /// is the safe side: a value too large has people pass for steadier than they are.
+  double camera_sigma_m = 0;
   /// Bounds of what is believed.
   MotionNoise least{0.01, 0.1, 0.1};
   MotionNoise largest{0.3, 20.0, 20.0};

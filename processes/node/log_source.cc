@@ -49,12 +49,17 @@ bool IsOutputChannel(const std::string& name) {
   return Contains(kOutputs, name);
 }
 
-LogSource::LogSource(const std::string& path, std::int64_t first_seq, std::int64_t last_seq)
-    : reader_(path), first_seq_(first_seq), last_seq_(last_seq) {}
+LogSource::LogSource(const std::string& path, std::int64_t first_seq, std::int64_t last_seq,
+                     LogInputs inputs)
+    : reader_(path), first_seq_(first_seq), last_seq_(last_seq), inputs_(inputs) {}
 
 std::optional<LogEvent> LogSource::NextInput(Header* header) {
   while (std::optional<LogEvent> event = reader_.Next()) {
-    if (!IsInputChannel(event->channel)) continue;
+    const bool is_feature =
+        event->channel == channel::kStaticFeatures || event->channel == channel::kHumanObservations;
+    const bool is_input =
+        IsInputChannel(event->channel) || (is_feature && inputs_ == LogInputs::kFeatures);
+    if (!is_input) continue;
     const std::optional<Header> peeked = PeekHeader(event->payload.data(), event->payload.size());
     if (!peeked) {
       ++num_without_header_;

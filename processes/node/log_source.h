@@ -37,6 +37,12 @@ class FrameSource {
   virtual std::vector<std::string> TakeNotes() = 0;
 };
 
+/// Which of a log's messages are the input of a run.
+enum class LogInputs {
+  kImages,    ///< those from outside
+  kFeatures,  ///< also what the frontend and the human tracker made of them
+};
+
 /// The input channels of a log, in the log's order. A frame ends before the first message of a
 /// newer one; messages that come late travel with the frame in which they came. Messages without a
 /// header are dropped and counted in damage().
@@ -45,7 +51,8 @@ class LogSource : public FrameSource {
   /// Frames with first_seq <= seq <= last_seq; calibrations from before are kept.
   explicit LogSource(const std::string& path,
                      std::int64_t first_seq = std::numeric_limits<std::int64_t>::min(),
-                     std::int64_t last_seq = std::numeric_limits<std::int64_t>::max());
+                     std::int64_t last_seq = std::numeric_limits<std::int64_t>::max(),
+                     LogInputs inputs = LogInputs::kImages);
 
   std::vector<Envelope> NextFrame() override;
   double fraction_done() const override;
@@ -58,6 +65,7 @@ class LogSource : public FrameSource {
   EventLogReader reader_;
   std::int64_t first_seq_;
   std::int64_t last_seq_;
+  LogInputs inputs_;
   std::int64_t num_without_header_ = 0;
   std::vector<std::string> notes_;
   std::optional<Header> newest_;

@@ -36,6 +36,9 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"off", "on"}));
   app.add_option("--first", first, "first image number");
   app.add_option("--last", last, "last image number");
+  app.add_flag("--from-features", setup.from_features,
+               "run only the optimizer and the map recorder, on the features and people that the "
+               "log holds (airdos-simulate)");
   app.add_option("--timing", timing_path, "JSON file for ms per frame of each process");
   app.add_flag("--no-progress", no_progress, "do not say how far it is");
   app.add_flag("--digest", digest, "print the digests of the output channels only");
@@ -47,7 +50,9 @@ int main(int argc, char** argv) {
       return 0;
     }
     cv::setNumThreads(1);
-    const auto source = airdos::OpenFrameSource(input, first, last);
+    const auto inputs =
+        setup.from_features ? airdos::LogInputs::kFeatures : airdos::LogInputs::kImages;
+    const auto source = airdos::OpenFrameSource(input, first, last, inputs);
     const auto nodes = airdos::MakeReplayNodes(setup);
     airdos::ProgressBar bar;
     if (!no_progress) options.on_progress = [&bar](double fraction) { bar.Show(fraction); };

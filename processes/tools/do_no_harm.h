@@ -13,10 +13,10 @@ namespace airdos {
 
 struct DoNoHarmOptions {
   AblationOptions ablation;
-  /// People are believed only if their shift of the last pose is one that the static solution's
-  /// covariance allows (squared Mahalanobis distance, chi-squared with 6 degrees of freedom, one
-  /// in a thousand) ...
-  double max_shift_chi2 = 22.5;
+  /// People are believed only if the static scene does not contradict them: its own residuals, at
+  /// the poses with people, may not add up to more than at its own solution by what chance allows
+  /// (a likelihood ratio with 6 degrees of freedom a free pose; so many sigmas above the mean) ...
+  double max_deviance_sigmas = 3;
   /// ... and the static scene has not said everything already: sigma of the last position with
   /// people over the one without.
   double max_relative_sigma = 0.98;
@@ -31,6 +31,8 @@ struct DoNoHarmRun {
   AblationErrors without_people;
   AblationErrors decided;
   bool is_trusted = false;
+  double deviance_sigmas = 0;  ///< see DoNoHarmOptions
+  double relative_sigma = 1;
   double AteRatio() const { return decided.ate_aligned_m / without_people.ate_aligned_m; }
   double RpeRatio() const { return decided.rpe_m / without_people.rpe_m; }
 };

@@ -73,7 +73,8 @@ class Archive {
     const std::size_t size = message.payload.size();
     const Header header = PeekHeader(data, size).value_or(Header{});
     const bool is_input = IsInputChannel(message.channel);
-    if (message.channel == channel::kCameraLeft || message.channel == channel::kCameraRight)
+    if (message.channel == channel::kCameraLeft || message.channel == channel::kCameraRight ||
+        message.channel == channel::kStaticFeatures)
       frames_.insert({header.session, header.seq});
     if (message.channel == channel::kStateEstimate && HasPose(data, size))
       posed_.insert({header.session, header.seq});

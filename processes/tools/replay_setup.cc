@@ -92,6 +92,8 @@ std::vector<ReplayNode> MakeReplayNodes(const ReplaySetup& setup) {
   }
   std::vector<ReplayNode> nodes;
   for (const Process& process : Processes()) {
+    const bool makes_features = process.name == "frontend" || process.name == "human_tracker";
+    if (setup.from_features && makes_features) continue;
     ConfigReader config = ConfigReader::FromFile(setup.config_dir + "/" + process.name + ".yaml");
     for (const std::string& assignment : assignments[process.name]) config.Override(assignment);
     nodes.push_back({process.make_node(&config), process.publishes});
@@ -103,10 +105,10 @@ std::vector<ReplayNode> MakeReplayNodes(const ReplaySetup& setup) {
 }
 
 std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, std::int64_t first,
-                                             std::int64_t last) {
+                                             std::int64_t last, LogInputs inputs) {
   if (std::filesystem::is_directory(path))
     return std::make_unique<DatasetSource>(path, first, last, kSession, ImagePackerOptions());
-  return std::make_unique<LogSource>(path, first, last);
+  return std::make_unique<LogSource>(path, first, last, inputs);
 }
 
 ProgressBar::ProgressBar() : is_terminal_(isatty(STDERR_FILENO) == 1) {}

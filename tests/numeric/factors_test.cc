@@ -212,6 +212,22 @@ TEST(PartMotionFactorTest, ValueAndDerivatives) {
   ExpectDerivativesMatch(factor, {Block(p), Block(moved + p), Block(motion)});
 }
 
+TEST(PartSmoothnessFactorTest, ValueAndDerivatives) {
+  // Half the way and half the turn in half the time: the same velocity.
+  const Se3 whole{ExpSo3({0, 0.2, 0}), {1, 0, 0.5}};
+  const Se3 half{ExpSo3({0, 0.1, 0}), {0.5, 0, 0.25}};
+  const PartSmoothnessFactor uneven(0.2, 0.1, 0.5, 0.4);
+  EXPECT_LT(Residual(uneven, {Block(whole), Block(half)}).norm(), 1e-10);
+  // By hand, steps of 0.1 s: 5 m/s less at sigma 0.5 m/s, 1 rad/s less at sigma 0.4 rad/s.
+  const PartSmoothnessFactor even(0.1, 0.1, 0.5, 0.4);
+  Vector6d expected;
+  expected << -10, 0, -5, 0, -2.5, 0;
+  EXPECT_LT((Residual(even, {Block(whole), Block(half)}) - expected).norm(), 1e-10);
+  std::mt19937 generator(8);
+  ExpectDerivativesMatch(uneven,
+                         {Block(RandomPose(&generator, 0.5)), Block(RandomPose(&generator, 0.5))});
+}
+
 TEST(RotationDampingFactorTest, ValueAndDerivatives) {
   const Eigen::Vector3d axis = Eigen::Vector3d(1, 2, 2) / 3;
   const RotationDampingFactor factor(axis * axis.transpose() / 0.1);

@@ -1,0 +1,23 @@
+#ifndef AIRDOS_TESTS_SUPPORT_BA_PROBLEM_H_
+#define AIRDOS_TESTS_SUPPORT_BA_PROBLEM_H_
+
+#include <string>
+
+#include "common/optimization/bundle_adjuster.h"
+#include "common/optimization/bundle_problem.h"
+
+namespace airdos {
+
+/// A problem of the paper's timing benchmark (text, one record a line): points measured in camera
+/// axes, one moving object with segments and one rigid motion over the track.
+struct BaProblem {
+  BundleProblem problem;  ///< start values
+  BundleOptions options;  ///< sigmas of the file, no kernels, no elimination
+};
+
+/// Throws InputError naming file and line.
+BaProblem ReadBaProblem(const std::string& path);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_TESTS_SUPPORT_BA_PROBLEM_H_
