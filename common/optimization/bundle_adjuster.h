@@ -32,7 +32,7 @@ struct BundleOptions {
 
   // People. Motion and acceleration where a person's own noise is not given.
   double rigidity_sigma_m = 0.015;
-  double motion_sigma_m = 0.05;
+  double motion_sigma_m = 0.04;
   double motion_max_gap_s = 0.5;          ///< no motion factor across a longer gap in a track
   double person_acceleration_m_s2 = 2.0;  ///< sigma of the change of velocity (kVelocity)
   double person_speed_m_s = 0;            ///< sigma of a track's first velocity; 0: unknown

@@ -57,7 +57,7 @@ Envelope StaticFeatures(const SimulationOptions& options, const SimulatedFrame& 
   auto message = MessageOf<static_features_t>(header);
   message.tracking_state =
       header.seq == 0 ? +static_features_t::STATE_INITIALIZING : +static_features_t::STATE_TRACKING;
-  FromSe3(frame.T_W_C_odometry, message.position_W_C, message.orientation_W_C);
+  FromSe3(frame.T_W_C_odometry, message.position_O_C, message.orientation_O_C);
   message.sigma_position_m = options.odometry_sigma_m;
   message.sigma_orientation_rad = options.odometry_sigma_deg * M_PI / 180;
   message.num_features = static_cast<std::int32_t>(frame.static_points.size());
