@@ -74,7 +74,7 @@ bool Step(const StereoCamera& camera, const std::vector<PoseObservation>& observ
     if (!residual.is_in_front) continue;
     const double norm = residual.value.norm();
     const double huber = std::sqrt(Chi2Bound(observations[i]));
-    const double weight = robust && norm > huber ? huber / norm : 1.0;
+    const double weight = observations[i].weight * (robust && norm > huber ? huber / norm : 1.0);
     H.noalias() += weight * residual.jacobian.transpose() * residual.jacobian;
     b.noalias() -= weight * residual.jacobian.transpose() * residual.value;
     ++num_used;
@@ -116,7 +116,8 @@ PoseEstimate EstimatePose(const StereoCamera& camera,
           residual.is_in_front && residual.value.squaredNorm() <= Chi2Bound(observations[i]);
       if (!estimate.is_inlier[i]) continue;
       ++estimate.num_inliers;
-      estimate.information.noalias() += residual.jacobian.transpose() * residual.jacobian;
+      estimate.information.noalias() +=
+          observations[i].weight * residual.jacobian.transpose() * residual.jacobian;
     }
   }
   return estimate;
