@@ -8,6 +8,7 @@
 #include <set>
 
 #include "common/features/patch.h"
+#include "common/features/pose_score.h"
 #include "common/util/check.h"
 
 namespace airdos {
@@ -56,6 +57,15 @@ bool IsMasked(const cv::Mat& mask, const Eigen::Vector2d& uv_px) {
   return mask.at<uchar>(v, u) != 0;
 }
 
+/// In an estimate of the pose. Less than the trust: the doubtful ones err together.
+double WeightOf(double relative_trust) { return relative_trust * relative_trust; }
+
+std::set<LandmarkId> IdsOf(const std::vector<LandmarkSighting>& sightings) {
+  std::set<LandmarkId> ids;
+  for (const LandmarkSighting& sighting : sightings) ids.insert(sighting.id);
+  return ids;
+}
+
 }  // namespace
 
 struct VisualOdometry::View {
@@ -98,41 +108,62 @@ OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoIm
   frame.prior_sigma_position_m = prior.sigma_position_m;
   frame.prior_sigma_orientation_rad = prior.sigma_orientation_rad;
 
-  Hypothesis best =
-      TrackFrom(view, predicted, {options_.wide_radius_px, options_.wide_max_hamming, 0.9}, prior);
-  if (const std::optional<Se3> relocated = Relocate(view)) {
-    const Hypothesis other =
-        TrackFrom(view, *relocated, {8, options_.narrow_max_hamming, 0.9}, std::nullopt);
-    if (other.num_inliers > best.num_inliers) best = other;
-  }
-  frame.num_matched = static_cast<int>(best.matches.size());
-  frame.sightings = Sight(view, best);
-
-  std::vector<PoseObservation> observations;
-  for (const LandmarkSighting& sighting : frame.sightings) {
-    observations.push_back({map_.landmarks().at(sighting.id).p_W, sighting.uvu_px,
-                            sighting.has_right, sighting.sigma_px});
-  }
-  const PoseEstimate estimate = EstimatePose(camera, observations, best.T_W_C, prior);
+  const Tracking best = Track(view, prior);
+  const PoseEstimate& estimate = best.estimate;
+  frame.num_matched = static_cast<int>(best.hypothesis.matches.size());
   frame.T_W_C = is_first ? Se3() : estimate.T_W_C;
   frame.state = is_first ? TrackingState::kInitializing : StateOf(estimate.num_inliers);
   std::vector<LandmarkSighting> inliers;
-  for (std::size_t i = 0; i < observations.size(); ++i) {
-    if (estimate.is_inlier[i]) inliers.push_back(frame.sightings[i]);
+  for (std::size_t i = 0; i < best.sightings.size(); ++i) {
+    if (estimate.is_inlier[i]) inliers.push_back(best.sightings[i]);
   }
   if (frame.state == TrackingState::kCoasting) {
     frame.T_W_C = predicted;
     inliers.clear();
   }
   num_coasted_ = frame.state == TrackingState::kCoasting ? num_coasted_ + 1 : 0;
+  const TrustField field =
+      is_first || frame.state == TrackingState::kCoasting
+          ? judge_.Unknown()
+          : judge_.Judge(camera, frame.T_W_C, best.tried, IdsOf(inliers), &map_);
   frame.sightings = KeepSpread(std::move(inliers));
 
   UpdateLandmarks(view, frame.T_W_C, frame.sightings);
   Remember(images.id, images.time_s, frame.T_W_C);
   if (frame.state == TrackingState::kTracking) LearnFrom(estimate, prior);
-  CreateLandmarks(view, frame.T_W_C, &frame.sightings);
+  CreateLandmarks(view, frame.T_W_C, field, &frame.sightings);
   map_.Cull(images.id);
   return frame;
+}
+
+VisualOdometry::Tracking VisualOdometry::Track(const View& view, const PosePrior& prior) const {
+  const ProjectionSearch wide{options_.wide_radius_px, options_.wide_max_hamming, 0.9};
+  const ProjectionSearch narrow{8, options_.narrow_max_hamming, 0.9};
+  Tracking best = Measure(view, TrackFrom(view, prior.T_W_C, wide, prior), prior);
+  const std::optional<Se3> relocated = Relocate(view);
+  if (!relocated) return best;
+  Hypothesis other = TrackFrom(view, *relocated, narrow, std::nullopt);
+  if (best.hypothesis.matches == other.matches) return best;
+  Tracking other_measured = Measure(view, std::move(other), prior);
+  return other_measured.score > best.score ? other_measured : best;
+}
+
+VisualOdometry::Tracking VisualOdometry::Measure(const View& view, Hypothesis hypothesis,
+                                                 const PosePrior& prior) const {
+  Tracking tracking;
+  tracking.sightings = Sight(view, hypothesis, &tracking.tried);
+  std::vector<PoseObservation> observations;
+  std::vector<double> trust;
+  for (const LandmarkSighting& sighting : tracking.sightings) {
+    const LocalLandmark& landmark = map_.landmarks().at(sighting.id);
+    trust.push_back(judge_.RelativeTrust(landmark.trust));
+    observations.push_back({landmark.p_W, sighting.uvu_px, sighting.has_right, sighting.sigma_px,
+                            WeightOf(trust.back())});
+  }
+  tracking.estimate = EstimatePose(view.camera, observations, hypothesis.T_W_C, prior);
+  tracking.score = ScorePose(tracking.estimate, trust, prior);
+  tracking.hypothesis = std::move(hypothesis);
+  return tracking;
 }
 
 OdometryFrame VisualOdometry::Coast(FrameId id, double time_s) {
@@ -195,7 +226,8 @@ VisualOdometry::Hypothesis VisualOdometry::TrackFrom(const View& view, const Se3
     if (estimate.num_inliers >= options_.min_inliers_weak) hypothesis.T_W_C = estimate.T_W_C;
     std::vector<LandmarkMatch> inliers;
     for (std::size_t i = 0; i < hypothesis.matches.size(); ++i) {
-      if (estimate.is_inlier[i]) inliers.push_back(hypothesis.matches[i]);
+      if (!estimate.is_inlier[i]) continue;
+      inliers.push_back(hypothesis.matches[i]);
     }
     hypothesis.matches = std::move(inliers);
     if (pass < 2) search = {kNarrowRadii_px[pass], options_.narrow_max_hamming, 0.95};
@@ -234,16 +266,18 @@ PoseEstimate VisualOdometry::EstimateFromMatches(const View& view,
   std::vector<PoseObservation> observations;
   for (const LandmarkMatch& match : matches) {
     const Feature& feature = view.left_features[static_cast<std::size_t>(match.feature)];
-    observations.push_back({map_.landmarks().at(match.landmark).p_W,
+    const LocalLandmark& landmark = map_.landmarks().at(match.landmark);
+    observations.push_back({landmark.p_W,
                             {feature.uv_px.x(), feature.uv_px.y(), 0},
                             false,
-                            2 * options_.corner_sigma_px * view.left->scale(feature.level)});
+                            2 * options_.corner_sigma_px * view.left->scale(feature.level),
+                            WeightOf(judge_.RelativeTrust(landmark.trust))});
   }
   return EstimatePose(view.camera, observations, start, prior);
 }
 
-std::vector<LandmarkSighting> VisualOdometry::Sight(const View& view,
-                                                    const Hypothesis& hypothesis) {
+std::vector<LandmarkSighting> VisualOdometry::Sight(const View& view, const Hypothesis& hypothesis,
+                                                    std::vector<LandmarkId>* tried) const {
   struct Candidate {
     VisibleLandmark visible;
     const Feature* feature;
@@ -272,8 +306,7 @@ std::vector<LandmarkSighting> VisualOdometry::Sight(const View& view,
   for (const Candidate& candidate : candidates) {
     if (!cells.Take(candidate.visible.uv_px, kMaxTriedPerCell)) continue;
     // Of a pose that nothing supports it cannot be said what should be in view.
-    if (hypothesis.num_inliers >= options_.min_inliers_weak)
-      ++map_.landmarks().at(candidate.visible.id).num_expected;
+    if (hypothesis.num_inliers >= options_.min_inliers_weak) tried->push_back(candidate.visible.id);
     if (const auto sighting = SightOne(view, candidate.visible, candidate.feature))
       sightings.push_back(*sighting);
   }
@@ -362,7 +395,7 @@ void VisualOdometry::UpdateLandmarks(const View& view, const Se3& T_W_C,
   }
 }
 
-void VisualOdometry::CreateLandmarks(const View& view, const Se3& T_W_C,
+void VisualOdometry::CreateLandmarks(const View& view, const Se3& T_W_C, const TrustField& field,
                                      std::vector<LandmarkSighting>* sightings) {
   CellCounter cells(options_.observation_cell_px);
   for (const LandmarkSighting& sighting : *sightings)
@@ -389,6 +422,7 @@ void VisualOdometry::CreateLandmarks(const View& view, const Se3& T_W_C,
     landmark.reference_uv_px = feature->uv_px;
     landmark.reference_level = feature->level;
     landmark.descriptor = feature->descriptor;
+    landmark.trust = LandmarkTrust(field.At(feature->uv_px, p_C->z()));
     landmark.last_seen = view.images.id;
     landmark.num_seen = 1;
     landmark.num_expected = 1;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/features/feature_extractor.h"
+#include "common/features/landmark_judge.h"
 #include "common/features/landmark_matcher.h"
 #include "common/features/local_map.h"
 #include "common/features/pose_estimator.h"
@@ -67,8 +68,9 @@ struct OdometryFrame {
 };
 
 /// Stereo odometry against a local map: the constant-velocity prediction and a descriptor search
-/// over the whole image are two hypotheses for the pose, of which the one with more support is
-/// kept; each landmark is then found again to a fraction of a pixel by its own patch. It never
+/// over the whole image are two hypotheses for the pose; where they differ each is measured, every
+/// landmark found again to a fraction of a pixel by its own patch, and the one is kept that more
+/// trusted landmarks agree with. What moves is not trusted: see LandmarkJudge. It never
 /// resets: without support it coasts on the prediction and goes on matching the whole map. W is the
 /// first left camera.
 class VisualOdometry {
@@ -92,20 +94,35 @@ class VisualOdometry {
     int num_inliers = 0;
   };
 
+  /// A hypothesis, measured to a fraction of a pixel.
+  struct Tracking {
+    Hypothesis hypothesis;
+    std::vector<LandmarkSighting> sightings;
+    std::vector<LandmarkId> tried;
+    PoseEstimate estimate;
+    double score = 0;
+  };
+
   Se3 Predict(double time_s) const;
   PosePrior Prior(const Se3& T_W_C_predicted) const;
+  /// The better of two hypotheses.
+  Tracking Track(const View& view, const PosePrior& prior) const;
   Hypothesis TrackFrom(const View& view, const Se3& start, const ProjectionSearch& first,
                        const std::optional<PosePrior>& prior) const;
   std::optional<Se3> Relocate(const View& view) const;
   PoseEstimate EstimateFromMatches(const View& view, const std::vector<LandmarkMatch>& matches,
                                    const Se3& start, const std::optional<PosePrior>& prior) const;
-  std::vector<LandmarkSighting> Sight(const View& view, const Hypothesis& hypothesis);
+  /// Finds the landmarks of the hypothesis to a fraction of a pixel; the pose from them.
+  Tracking Measure(const View& view, Hypothesis hypothesis, const PosePrior& prior) const;
+  /// `tried`: the landmarks that should be in view and were looked for.
+  std::vector<LandmarkSighting> Sight(const View& view, const Hypothesis& hypothesis,
+                                      std::vector<LandmarkId>* tried) const;
   std::optional<LandmarkSighting> SightOne(const View& view, const VisibleLandmark& visible,
                                            const Feature* feature) const;
   std::vector<LandmarkSighting> KeepSpread(std::vector<LandmarkSighting> sightings) const;
   void UpdateLandmarks(const View& view, const Se3& T_W_C,
                        const std::vector<LandmarkSighting>& sightings);
-  void CreateLandmarks(const View& view, const Se3& T_W_C,
+  void CreateLandmarks(const View& view, const Se3& T_W_C, const TrustField& field,
                        std::vector<LandmarkSighting>* sightings);
   void Remember(FrameId id, double time_s, const Se3& T_W_C);
   /// Notes by how much the prediction was off, if the frame's own measurements say it better than
@@ -116,6 +133,7 @@ class VisualOdometry {
   const VisualOdometryOptions options_;
   FeatureExtractor extractor_;
   LocalMap map_;
+  LandmarkJudge judge_;
   std::deque<std::pair<FrameId, double>> recent_;  // frame and time, newest last
   int num_coasted_ = 0;                            // frames in a row
   std::deque<Vector6d> innovations_;  // pose minus prediction of the last tracked frames
