@@ -16,6 +16,10 @@ struct LandmarkMatch {
   LandmarkId landmark;
   int feature = 0;
   int distance = 0;  ///< bits
+
+  friend bool operator==(const LandmarkMatch& a, const LandmarkMatch& b) {
+    return a.landmark == b.landmark && a.feature == b.feature;
+  }
 };
 
 struct ProjectionSearch {

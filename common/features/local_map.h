@@ -11,6 +11,7 @@
 
 #include "common/features/feature.h"
 #include "common/features/image_pyramid.h"
+#include "common/features/landmark_trust.h"
 #include "common/geometry/se3.h"
 #include "common/util/ids.h"
 
@@ -31,10 +32,11 @@ struct LocalLandmark {
   Eigen::Vector2d reference_uv_px = Eigen::Vector2d::Zero();
   int reference_level = 0;
 
+  LandmarkTrust trust;      ///< that it does not move
   Descriptor descriptor{};  ///< as when it was created
   FrameId last_seen;
   int num_seen = 0;
-  int num_expected = 0;  ///< frames in which it lay in view and off people
+  int num_expected = 0;  ///< frames in which it was looked for: in view and off people
 };
 
 struct LocalMapOptions {

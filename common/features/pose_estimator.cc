@@ -100,7 +100,7 @@ bool Step(const Knowledge& known, const std::vector<bool>& is_used, bool robust,
     if (!residual.is_in_front) continue;
     const double norm = residual.value.norm();
     const double huber = std::sqrt(Chi2Bound(observations[i]));
-    const double weight = robust && norm > huber ? huber / norm : 1.0;
+    const double weight = observations[i].weight * (robust && norm > huber ? huber / norm : 1.0);
     H.noalias() += weight * residual.jacobian.transpose() * residual.jacobian;
     b.noalias() -= weight * residual.jacobian.transpose() * residual.value;
     ++num_used;
@@ -171,7 +171,8 @@ PoseEstimate EstimatePose(const StereoCamera& camera,
                               residual.value.squaredNorm() <= Chi2Bound(observations[i]);
       if (!estimate.is_inlier[i]) continue;
       ++estimate.num_inliers;
-      estimate.information.noalias() += residual.jacobian.transpose() * residual.jacobian;
+      estimate.information.noalias() +=
+          observations[i].weight * residual.jacobian.transpose() * residual.jacobian;
     }
   }
   return estimate;

@@ -16,6 +16,7 @@ struct PoseObservation {
   Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();  ///< u_left, v, u_right
   bool has_right = false;
   double sigma_px = 1;
+  double weight = 1;  ///< in the estimate, 0..1; does not matter to who is an inlier
   Eigen::Matrix3d covariance_W = Eigen::Matrix3d::Zero();  ///< m^2, of p_W; zero: exactly known
 };
 

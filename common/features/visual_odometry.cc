@@ -8,6 +8,7 @@
 #include <set>
 
 #include "common/features/patch.h"
+#include "common/features/pose_score.h"
 #include "common/util/check.h"
 
 namespace airdos {
@@ -61,6 +62,15 @@ Eigen::Matrix3d CovarianceOf(const LocalLandmark& landmark) {
   return landmark.created_covariance_W / landmark.num_seen;
 }
 
+/// In an estimate of the pose. Less than the trust: the doubtful ones err together.
+double WeightOf(double relative_trust) { return relative_trust * relative_trust; }
+
+std::set<LandmarkId> IdsOf(const std::vector<LandmarkSighting>& sightings) {
+  std::set<LandmarkId> ids;
+  for (const LandmarkSighting& sighting : sightings) ids.insert(sighting.id);
+  return ids;
+}
+
 }  // namespace
 
 struct VisualOdometry::View {
@@ -105,26 +115,29 @@ OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoIm
 
   const std::vector<PersonConstraint> people = Constraints(images, prior);
   const PeoplePose with_people = EstimatePoseFromPeople(prior, people);
-  const Hypothesis best = FindBest(view, with_people.prior);
-  frame.num_matched = static_cast<int>(best.matches.size());
-  frame.sightings = KeepSpread(Sight(view, best));
-  PoseEstimate estimate =
-      EstimateFromSightings(camera, frame.sightings, best.T_W_C, with_people.prior);
+  const Tracking best = Track(view, with_people.prior);
+  PoseEstimate estimate = best.estimate;
+  frame.num_matched = static_cast<int>(best.hypothesis.matches.size());
   const bool is_strong = estimate.num_inliers >= options_.max_static_for_people;
   if (is_strong && !people.empty()) {
-    estimate = EstimateFromSightings(camera, frame.sightings, best.T_W_C, prior);
+    estimate = EstimateFromSightings(camera, best.sightings, best.hypothesis.T_W_C, prior);
   }
   frame.num_people = is_strong ? 0 : static_cast<int>(people.size());
   const bool is_believed = IsBelievable(estimate, with_people.prior);
   num_static_ = is_believed ? estimate.num_inliers : 0;
   frame.state = is_first ? TrackingState::kInitializing : StateOf(num_static_);
-  frame.sightings = Inliers(frame.sightings, estimate);
+  frame.sightings = Inliers(best.sightings, estimate);
   if (frame.state == TrackingState::kCoasting) {
     frame.sightings.clear();
     estimate.T_W_C = with_people.prior.T_W_C;
     estimate.information.setZero();
   }
   frame.T_W_C = is_first ? Se3() : estimate.T_W_C;
+  const TrustField field =
+      is_first || frame.state == TrackingState::kCoasting
+          ? judge_.Unknown()
+          : judge_.Judge(camera, frame.T_W_C, best.tried, IdsOf(frame.sightings), &map_);
+  frame.sightings = KeepSpread(std::move(frame.sightings));
 
   UpdateLandmarks(view, frame.T_W_C, frame.sightings);
   if (!is_first) {
@@ -134,9 +147,39 @@ OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoIm
   }
   people_.Update(images.people, frame.T_W_C, motion_.pose_covariance());
   Remember(images.id, images.time_s, &frame);
-  CreateLandmarks(view, frame.T_W_C, &frame.sightings);
+  CreateLandmarks(view, frame.T_W_C, field, &frame.sightings);
   map_.Cull(images.id);
   return frame;
+}
+
+VisualOdometry::Tracking VisualOdometry::Track(const View& view, const PosePrior& prior) const {
+  const ProjectionSearch wide{options_.wide_radius_px, options_.wide_max_hamming, 0.9};
+  const ProjectionSearch narrow{8, options_.narrow_max_hamming, 0.9};
+  Tracking best = Measure(view, TrackFrom(view, prior.T_W_C, wide, prior), prior);
+  const std::optional<Se3> relocated = Relocate(view);
+  if (!relocated) return best;
+  Hypothesis other = TrackFrom(view, *relocated, narrow, std::nullopt);
+  if (best.hypothesis.matches == other.matches) return best;
+  Tracking other_measured = Measure(view, std::move(other), prior);
+  return other_measured.score > best.score ? other_measured : best;
+}
+
+VisualOdometry::Tracking VisualOdometry::Measure(const View& view, Hypothesis hypothesis,
+                                                 const PosePrior& prior) const {
+  Tracking tracking;
+  tracking.sightings = Sight(view, hypothesis, &tracking.tried);
+  if (tracking.sightings.size() > static_cast<std::size_t>(options_.max_observations)) {
+    tracking.sightings = KeepSpread(std::move(tracking.sightings));
+  }
+  std::vector<double> trust;
+  for (const LandmarkSighting& sighting : tracking.sightings) {
+    trust.push_back(judge_.RelativeTrust(map_.landmarks().at(sighting.id).trust));
+  }
+  tracking.estimate =
+      EstimateFromSightings(view.camera, tracking.sightings, hypothesis.T_W_C, prior);
+  tracking.score = ScorePose(tracking.estimate, trust, prior);
+  tracking.hypothesis = std::move(hypothesis);
+  return tracking;
 }
 
 OdometryFrame VisualOdometry::Coast(FrameId id, double time_s) {
@@ -189,18 +232,6 @@ std::vector<PersonConstraint> VisualOdometry::Constraints(const StereoImagePair&
   return people_.Constrain(images.people, prior.T_W_C, prior.covariance);
 }
 
-VisualOdometry::Hypothesis VisualOdometry::FindBest(const View& view,
-                                                    const PosePrior& prior) const {
-  Hypothesis best = TrackFrom(view, prior.T_W_C,
-                              {options_.wide_radius_px, options_.wide_max_hamming, 0.9}, prior);
-  if (const std::optional<Se3> relocated = Relocate(view)) {
-    const Hypothesis other =
-        TrackFrom(view, *relocated, {8, options_.narrow_max_hamming, 0.9}, std::nullopt);
-    if (other.num_inliers > best.num_inliers) best = other;
-  }
-  return best;
-}
-
 VisualOdometry::Hypothesis VisualOdometry::TrackFrom(const View& view, const Se3& start,
                                                      const ProjectionSearch& first,
                                                      const std::optional<PosePrior>& prior) const {
@@ -216,7 +247,8 @@ VisualOdometry::Hypothesis VisualOdometry::TrackFrom(const View& view, const Se3
     if (estimate.num_inliers >= options_.min_inliers_weak) hypothesis.T_W_C = estimate.T_W_C;
     std::vector<LandmarkMatch> inliers;
     for (std::size_t i = 0; i < hypothesis.matches.size(); ++i) {
-      if (estimate.is_inlier[i]) inliers.push_back(hypothesis.matches[i]);
+      if (!estimate.is_inlier[i]) continue;
+      inliers.push_back(hypothesis.matches[i]);
     }
     hypothesis.matches = std::move(inliers);
     if (pass < 2) search = {kNarrowRadii_px[pass], options_.narrow_max_hamming, 0.95};
@@ -260,6 +292,7 @@ PoseEstimate VisualOdometry::EstimateFromMatches(const View& view,
                             {feature.uv_px.x(), feature.uv_px.y(), 0},
                             false,
                             2 * options_.corner_sigma_px * view.left->scale(feature.level),
+                            WeightOf(judge_.RelativeTrust(landmark.trust)),
                             CovarianceOf(landmark)});
   }
   return EstimatePose(view.camera, observations, start, prior);
@@ -272,13 +305,14 @@ PoseEstimate VisualOdometry::EstimateFromSightings(const StereoCamera& camera,
   for (const LandmarkSighting& sighting : sightings) {
     const LocalLandmark& landmark = map_.landmarks().at(sighting.id);
     observations.push_back({landmark.p_W, sighting.uvu_px, sighting.has_right, sighting.sigma_px,
+                            WeightOf(judge_.RelativeTrust(landmark.trust)),
                             CovarianceOf(landmark)});
   }
   return EstimatePose(camera, observations, start, prior);
 }
 
-std::vector<LandmarkSighting> VisualOdometry::Sight(const View& view,
-                                                    const Hypothesis& hypothesis) {
+std::vector<LandmarkSighting> VisualOdometry::Sight(const View& view, const Hypothesis& hypothesis,
+                                                    std::vector<LandmarkId>* tried) const {
   struct Candidate {
     VisibleLandmark visible;
     const Feature* feature;
@@ -307,8 +341,7 @@ std::vector<LandmarkSighting> VisualOdometry::Sight(const View& view,
   for (const Candidate& candidate : candidates) {
     if (!cells.Take(candidate.visible.uv_px, kMaxTriedPerCell)) continue;
     // Of a pose that nothing supports it cannot be said what should be in view.
-    if (hypothesis.num_inliers >= options_.min_inliers_weak)
-      ++map_.landmarks().at(candidate.visible.id).num_expected;
+    if (hypothesis.num_inliers >= options_.min_inliers_weak) tried->push_back(candidate.visible.id);
     if (const auto sighting = SightOne(view, candidate.visible, candidate.feature))
       sightings.push_back(*sighting);
   }
@@ -397,7 +430,7 @@ void VisualOdometry::UpdateLandmarks(const View& view, const Se3& T_W_C,
   }
 }
 
-void VisualOdometry::CreateLandmarks(const View& view, const Se3& T_W_C,
+void VisualOdometry::CreateLandmarks(const View& view, const Se3& T_W_C, const TrustField& field,
                                      std::vector<LandmarkSighting>* sightings) {
   CellCounter cells(options_.observation_cell_px);
   for (const LandmarkSighting& sighting : *sightings)
@@ -426,6 +459,7 @@ void VisualOdometry::CreateLandmarks(const View& view, const Se3& T_W_C,
     landmark.reference_uv_px = feature->uv_px;
     landmark.reference_level = feature->level;
     landmark.descriptor = feature->descriptor;
+    landmark.trust = LandmarkTrust(field.At(feature->uv_px, p_C->z()));
     landmark.last_seen = view.images.id;
     landmark.num_seen = 1;
     landmark.num_expected = 1;

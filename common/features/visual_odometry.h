@@ -10,6 +10,7 @@
 
 #include "common/features/camera_motion_filter.h"
 #include "common/features/feature_extractor.h"
+#include "common/features/landmark_judge.h"
 #include "common/features/landmark_matcher.h"
 #include "common/features/local_map.h"
 #include "common/features/people_pose.h"
@@ -72,8 +73,9 @@ struct OdometryFrame {
 };
 
 /// Stereo odometry against a local map: the constant-velocity prediction and a descriptor search
-/// over the whole image are two hypotheses for the pose, of which the one with more support is
-/// kept; each landmark is then found again to a fraction of a pixel by its own patch. It never
+/// over the whole image are two hypotheses for the pose; where they differ each is measured, every
+/// landmark found again to a fraction of a pixel by its own patch, and the one is kept that more
+/// trusted landmarks agree with. What moves is not trusted: see LandmarkJudge. It never
 /// resets: without support it coasts on the prediction and goes on matching the whole map. W is the
 /// first left camera.
 ///
@@ -104,13 +106,23 @@ class VisualOdometry {
     int num_inliers = 0;
   };
 
+  /// A hypothesis, measured to a fraction of a pixel.
+  struct Tracking {
+    Hypothesis hypothesis;
+    std::vector<LandmarkSighting> sightings;
+    std::vector<LandmarkId> tried;
+    PoseEstimate estimate;
+    double score = 0;
+  };
+
   /// Seconds from the last frame; a step as before where the clock stands still or jumps.
   double StepTo(double time_s) const;
   PosePrior Predict(double step_s) const;
   /// People, as long as static landmarks were few in the last frame.
   std::vector<PersonConstraint> Constraints(const StereoImagePair& images,
                                             const PosePrior& prior) const;
-  Hypothesis FindBest(const View& view, const PosePrior& prior) const;
+  /// The better of two hypotheses.
+  Tracking Track(const View& view, const PosePrior& prior) const;
   Hypothesis TrackFrom(const View& view, const Se3& start, const ProjectionSearch& first,
                        const std::optional<PosePrior>& prior) const;
   std::optional<Se3> Relocate(const View& view) const;
@@ -120,13 +132,17 @@ class VisualOdometry {
                                      const std::vector<LandmarkSighting>& sightings,
                                      const Se3& start, const PosePrior& prior) const;
   void DescribePrior(double step_s, OdometryFrame* frame) const;
-  std::vector<LandmarkSighting> Sight(const View& view, const Hypothesis& hypothesis);
+  /// Finds the landmarks of the hypothesis to a fraction of a pixel; the pose from them.
+  Tracking Measure(const View& view, Hypothesis hypothesis, const PosePrior& prior) const;
+  /// `tried`: the landmarks that should be in view and were looked for.
+  std::vector<LandmarkSighting> Sight(const View& view, const Hypothesis& hypothesis,
+                                      std::vector<LandmarkId>* tried) const;
   std::optional<LandmarkSighting> SightOne(const View& view, const VisibleLandmark& visible,
                                            const Feature* feature) const;
   std::vector<LandmarkSighting> KeepSpread(std::vector<LandmarkSighting> sightings) const;
   void UpdateLandmarks(const View& view, const Se3& T_W_C,
                        const std::vector<LandmarkSighting>& sightings);
-  void CreateLandmarks(const View& view, const Se3& T_W_C,
+  void CreateLandmarks(const View& view, const Se3& T_W_C, const TrustField& field,
                        std::vector<LandmarkSighting>* sightings);
   Eigen::Matrix3d CreatedCovariance(const StereoCamera& camera, const Se3& T_W_C,
                                     const Eigen::Vector3d& p_C, double sigma_px) const;
@@ -142,6 +158,7 @@ class VisualOdometry {
   LocalMap map_;
   CameraMotionFilter motion_;
   PeopleFilter people_;
+  LandmarkJudge judge_;
   Se3 T_O_C_;                                      // of the last frame
   int num_static_ = 0;                             // inliers of the last frame
   std::deque<std::pair<FrameId, double>> recent_;  // frame and time, newest last

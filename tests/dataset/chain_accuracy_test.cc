@@ -109,6 +109,7 @@ INSTANTIATE_TEST_SUITE_P(Shared, SequenceTest,
                                          Case{"crossing/RoadCrossing06", "mask_only", 0.05, kAny},
                                          Case{"crossing/RoadCrossing07", "mask_only", 0.1, kAny},
                                          Case{"crossing/RoadCrossing07", "on", 0.1, kAny},
+                                         Case{"crossing/RoadCrossing03", "off", 0.03, kAny},
                                          Case{"crossing/RoadCrossing07", "off", kAny, kAny},
                                          Case{"kitti_odo_seq1", "mask_only", 0.3, 1.5},
                                          Case{"kitti_raw_pedestrian", "on", 0.6, kAny}));

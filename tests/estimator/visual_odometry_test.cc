@@ -139,6 +139,37 @@ TEST(VisualOdometry, AMaskOverMostOfTheImageIsKeptFreeAndSurvived) {
   }
 }
 
+/// A group walks into view from the left, unknown to the odometry: cards 2.5 m in front of the
+/// camera, 12 px (14 cm) a frame. In the end they hide three quarters of the world.
+StereoImagePair FrameWithWalkers(int k) {
+  constexpr int kDisparity_px = 21;
+  constexpr int kStep_px = 12;
+  constexpr int kWidth_px = 80;
+  static const cv::Mat kCloth = NoisePicture(kWidth_px, kCamera.height, 5);
+  const StereoPair& pair = Walk(k);
+  StereoImagePair images{FrameId{k}, kFrameStep_s * k, pair.left.clone(), pair.right.clone(), {}};
+  const auto draw = [](int begin, cv::Mat* image) {
+    const cv::Rect card =
+        cv::Rect(begin, 0, kWidth_px, image->rows) & cv::Rect(0, 0, image->cols, image->rows);
+    if (card.empty()) return;
+    kCloth(cv::Rect(card.x - begin, 0, card.width, card.height)).copyTo((*image)(card));
+  };
+  const int shift_px = kStep_px * k;
+  for (const int begin : {-80, -200, -320}) {
+    draw(begin + shift_px, &images.left);
+    draw(begin + shift_px - kDisparity_px, &images.right);
+  }
+  return images;
+}
+
+TEST(VisualOdometry, AGroupThatWalksTogetherDoesNotDragTheCamera) {
+  const std::vector<OdometryFrame> frames = RunAll(FrameWithWalkers);
+  for (int k = 0; k < kNumFrames; ++k) {
+    // Half of the image and the fewer landmarks: three times the bound.
+    ExpectNear(frames[static_cast<std::size_t>(k)], Truth(k), k, 3);
+  }
+}
+
 TEST(VisualOdometry, BlackFramesCoastAndTrackingComesBack) {
   const auto is_black = [](int k) { return k == 12 || k == 13; };
   const std::vector<OdometryFrame> frames =

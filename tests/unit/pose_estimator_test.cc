@@ -252,5 +252,23 @@ TEST(PoseEstimatorRansac, NothingFromFewPoints) {
   EXPECT_TRUE(EstimatePoseRansac(kCamera, Observe(6, 0, 1), 4));
 }
 
+TEST(PoseEstimator, ObservationsOfLittleWeightDoNotPullThePose) {
+  // A group that moves together, more points than the world shows, but doubted.
+  const auto moving = [](double weight) {
+    std::vector<PoseObservation> observations = Observe(120, 0.1, 5);
+    for (std::size_t i = 0; i < 80; ++i) {
+      observations[i].p_W += Eigen::Vector3d(0.05, 0, 0);
+      observations[i].weight = weight;
+    }
+    return observations;
+  };
+  const auto error_m = [&](double weight) {
+    const PoseEstimate estimate = EstimatePose(kCamera, moving(weight), TruePose(), std::nullopt);
+    return Boxminus(estimate.T_W_C, TruePose()).head<3>().norm();
+  };
+  EXPECT_GT(error_m(1.0), 0.03);
+  EXPECT_LT(error_m(0.04), 0.005);
+}
+
 }  // namespace
 }  // namespace airdos
