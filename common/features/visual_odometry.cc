@@ -57,8 +57,11 @@ std::vector<LandmarkSighting> Inliers(const std::vector<LandmarkSighting>& sight
   return inliers;
 }
 
-/// Each frame that sees a landmark makes it better known.
-Eigen::Matrix3d CovarianceOf(const LocalLandmark& landmark) {
+/// Each frame that sees a landmark makes it better known. Where many are seen at once their errors
+/// cancel, and the optimizer soon knows them better than this does.
+Eigen::Matrix3d CovarianceOf(const LocalLandmark& landmark, std::size_t num_seen_at_once) {
+  constexpr std::size_t kMany = 30;
+  if (num_seen_at_once >= kMany) return Eigen::Matrix3d::Zero();
   return landmark.created_covariance_W / landmark.num_seen;
 }
 
@@ -293,7 +296,7 @@ PoseEstimate VisualOdometry::EstimateFromMatches(const View& view,
                             false,
                             2 * options_.corner_sigma_px * view.left->scale(feature.level),
                             WeightOf(judge_.RelativeTrust(landmark.trust)),
-                            CovarianceOf(landmark)});
+                            CovarianceOf(landmark, matches.size())});
   }
   return EstimatePose(view.camera, observations, start, prior);
 }
@@ -306,7 +309,7 @@ PoseEstimate VisualOdometry::EstimateFromSightings(const StereoCamera& camera,
     const LocalLandmark& landmark = map_.landmarks().at(sighting.id);
     observations.push_back({landmark.p_W, sighting.uvu_px, sighting.has_right, sighting.sigma_px,
                             WeightOf(judge_.RelativeTrust(landmark.trust)),
-                            CovarianceOf(landmark)});
+                            CovarianceOf(landmark, sightings.size())});
   }
   return EstimatePose(camera, observations, start, prior);
 }

@@ -109,7 +109,7 @@ std::vector<LandmarkId> SlidingWindowOptimizer::Adjust(const Prediction& predict
 
   const bool is_static_strong =
       estimate->num_static_observations >= options_.trust.min_static_observations;
-  problem_ = ProblemWithPeople(without_people, is_static_strong);
+  problem_ = ProblemWithPeople(without_people, estimate->covariance, is_static_strong);
   if (!problem_.humans.empty()) {
     options = options_.bundle;
     options.compute_covariance = !is_static_strong;
@@ -130,6 +130,7 @@ std::vector<LandmarkId> SlidingWindowOptimizer::Adjust(const Prediction& predict
 }
 
 BundleProblem SlidingWindowOptimizer::ProblemWithPeople(const BundleProblem& without_people,
+                                                        const Matrix6d& camera_covariance,
                                                         bool is_static_strong) const {
   BundleProblem problem = without_people;
   problem.humans.clear();
@@ -140,7 +141,22 @@ BundleProblem SlidingWindowOptimizer::ProblemWithPeople(const BundleProblem& wit
     if (frame.id < people_.frames().front()) frame.is_fixed = true;
   }
   people_.AddTo(&problem);
+  if (options_.learn_track_noise) LearnTrackNoise(camera_covariance, &problem);
   return problem;
+}
+
+void SlidingWindowOptimizer::LearnTrackNoise(const Matrix6d& camera_covariance,
+                                             BundleProblem* problem) const {
+  TrackNoiseOptions noise;
+  // From a camera that does not know where it is nobody's steps can be told: the prior stays.
+  const double sigma_m = std::sqrt(camera_covariance.topLeftCorner<3, 3>().trace() / 3);
+  noise.camera_sigma_m = std::clamp(sigma_m, noise.camera_sigma_m, kUnobservedSigma);
+  noise.prior.motion_sigma_m = options_.bundle.motion_sigma_m;
+  noise.prior.acceleration_m_s2 = options_.bundle.person_acceleration_m_s2;
+  for (BundleProblem::Human& human : problem->humans) {
+    human.track_breaks = FindTrackBreaks(TrackBreakOptions(), *problem, human);
+    human.motion_noise = EstimateMotionNoise(noise, *problem, human);
+  }
 }
 
 SlidingWindowOptimizer::Prediction SlidingWindowOptimizer::Predict(const FrameInput& input) const {

@@ -9,6 +9,7 @@
 #include "common/optimization/bundle_adjuster.h"
 #include "common/optimization/frame_input.h"
 #include "common/optimization/human_tracks.h"
+#include "common/optimization/track_noise.h"
 #include "common/optimization/trust_rule.h"
 #include "common/optimization/window_map.h"
 
@@ -27,6 +28,7 @@ struct SlidingWindowOptions {
   CameraMotionOptions camera_motion;
   HumanTracksOptions people;  ///< its window is cut to that of the map
   TrustOptions trust;
+  bool learn_track_noise = true;  ///< how steadily each person moves, see track_noise.h
   double publish_moved_m = 1e-4;  ///< a landmark that moved less is not reported again
 };
 
@@ -97,6 +99,9 @@ class SlidingWindowOptimizer {
     Se3 T_W_C;
   };
 
+  /// How steadily each person of the problem moves, and where a track became somebody else's, as
+  /// seen from a camera whose newest pose is known that well.
+  void LearnTrackNoise(const Matrix6d& camera_covariance, BundleProblem* problem) const;
   /// Where the newest frame should be, seen from an older one.
   struct Prediction {
     FrameId base;
@@ -110,7 +115,8 @@ class SlidingWindowOptimizer {
   /// `prediction` stands in where the newest frame sees nothing static. Returns the bad landmarks.
   std::vector<LandmarkId> Adjust(const Prediction& prediction, FrameEstimate* estimate);
   /// The adjustment together with people, from the solved one without.
-  BundleProblem ProblemWithPeople(const BundleProblem& without_people, bool is_static_strong) const;
+  BundleProblem ProblemWithPeople(const BundleProblem& without_people,
+                                  const Matrix6d& camera_covariance, bool is_static_strong) const;
   void AddAccelerations(BundleProblem* problem) const;
   void LearnCarrier(const FrameInput& input);
   /// The poses of the window into the trajectory.

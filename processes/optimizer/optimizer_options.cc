@@ -46,6 +46,7 @@ void ReadPeople(ConfigReader* config, SlidingWindowOptions* window) {
   config->Read("people.segment_length_sigma_m", &bundle->segment_length_sigma_m, kMinSigma, 100);
   config->Read("people.motion_sigma_m", &bundle->motion_sigma_m, kMinSigma, 100);
   config->Read("people.motion_max_gap_s", &bundle->motion_max_gap_s, 0, 100);
+  config->Read("people.learn_track_noise", &window->learn_track_noise);
   config->Read("people.person_speed_m_s", &bundle->person_speed_m_s, 0, 1000);
   config->Read("people.person_acceleration_m_s2", &bundle->person_acceleration_m_s2, kMinSigma,
                1e4);
