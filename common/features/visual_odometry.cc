@@ -127,7 +127,7 @@ OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoIm
   frame.T_W_C = is_first ? Se3() : estimate.T_W_C;
 
   UpdateLandmarks(view, frame.T_W_C, frame.sightings);
-  if (!is_first) {
+  if (is_started_) {
     if (!is_strong) estimate.information += with_people.information;
     motion_.Update(prior, step_s, frame.T_W_C, estimate.information,
                    frame.state == TrackingState::kTracking);
@@ -135,6 +135,7 @@ OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoIm
   people_.Update(images.people, frame.T_W_C, motion_.pose_covariance());
   Remember(images.id, images.time_s, &frame);
   CreateLandmarks(view, frame.T_W_C, &frame.sightings);
+  is_started_ = is_started_ || !map_.landmarks().empty();
   map_.Cull(images.id);
   return frame;
 }
@@ -149,7 +150,7 @@ OdometryFrame VisualOdometry::Coast(FrameId id, double time_s) {
   frame.state = is_first ? TrackingState::kInitializing : TrackingState::kCoasting;
   frame.T_W_C = prior.T_W_C;
   num_static_ = 0;
-  if (!is_first) motion_.Update(prior, step_s, frame.T_W_C, Matrix6d::Zero(), false);
+  if (is_started_) motion_.Update(prior, step_s, frame.T_W_C, Matrix6d::Zero(), false);
   Remember(id, time_s, &frame);
   return frame;
 }

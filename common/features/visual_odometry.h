@@ -144,6 +144,7 @@ class VisualOdometry {
   PeopleFilter people_;
   Se3 T_O_C_;                                      // of the last frame
   int num_static_ = 0;                             // inliers of the last frame
+  bool is_started_ = false;                        // a landmark was created: W lies still
   std::deque<std::pair<FrameId, double>> recent_;  // frame and time, newest last
 };
 
