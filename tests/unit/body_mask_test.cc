@@ -62,6 +62,17 @@ TEST(BodyMask, CoversTheJointsAndWhatLiesBetween) {
   EXPECT_FALSE(IsOn(mask, 20, 20));
 }
 
+TEST(BodyMask, TheTrunkIsFilledHoweverBroad) {
+  // Only the trunk is seen, three times as broad as a line around it is thick.
+  BodyKeypoints person;
+  person[kRightShoulder] = {200, 100, 1};
+  person[kLeftShoulder] = {320, 100, 1};
+  person[kRightHip] = {200, 200, 1};
+  person[kLeftHip] = {320, 200, 1};
+  const cv::Mat mask = Draw({person});
+  EXPECT_EQ(cv::countNonZero(mask(cv::Rect(200, 100, 120, 100)) == 0), 0);
+}
+
 TEST(BodyMask, AsThickAsThePersonIsLarge) {
   // Just below the elbow's height there are arms and trunk: everything scales with 1 / depth.
   for (const double depth_m : {4.0, 8.0}) {
