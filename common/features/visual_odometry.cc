@@ -143,7 +143,7 @@ OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoIm
   frame.sightings = KeepSpread(std::move(frame.sightings));
 
   UpdateLandmarks(view, frame.T_W_C, frame.sightings);
-  if (!is_first) {
+  if (is_started_) {
     if (!is_strong) estimate.information += with_people.information;
     motion_.Update(prior, step_s, frame.T_W_C, estimate.information,
                    frame.state == TrackingState::kTracking);
@@ -151,6 +151,8 @@ OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoIm
   people_.Update(images.people, frame.T_W_C, motion_.pose_covariance());
   Remember(images.id, images.time_s, &frame);
   CreateLandmarks(view, frame.T_W_C, field, &frame.sightings);
+  if (!is_started_) num_static_ = static_cast<int>(frame.sightings.size());
+  is_started_ = is_started_ || !map_.landmarks().empty();
   map_.Cull(images.id);
   return frame;
 }
@@ -195,7 +197,7 @@ OdometryFrame VisualOdometry::Coast(FrameId id, double time_s) {
   frame.state = is_first ? TrackingState::kInitializing : TrackingState::kCoasting;
   frame.T_W_C = prior.T_W_C;
   num_static_ = 0;
-  if (!is_first) motion_.Update(prior, step_s, frame.T_W_C, Matrix6d::Zero(), false);
+  if (is_started_) motion_.Update(prior, step_s, frame.T_W_C, Matrix6d::Zero(), false);
   Remember(id, time_s, &frame);
   return frame;
 }

@@ -37,7 +37,7 @@ struct VisualOdometryOptions {
   int observation_cell_px = 16;   ///< at most two observed landmarks in each cell of this size
   CameraMotionFilterOptions motion;
   PeopleFilterOptions people;
-  int max_static_for_people = 30;  ///< with so many static landmarks people have no say
+  int max_static_for_people = 15;  ///< with so many static landmarks people have no say
 };
 
 enum class TrackingState { kInitializing, kTracking, kWeak, kCoasting };
@@ -161,6 +161,7 @@ class VisualOdometry {
   LandmarkJudge judge_;
   Se3 T_O_C_;                                      // of the last frame
   int num_static_ = 0;                             // inliers of the last frame
+  bool is_started_ = false;                        // a landmark was created: W lies still
   std::deque<std::pair<FrameId, double>> recent_;  // frame and time, newest last
 };
 

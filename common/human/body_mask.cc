@@ -40,7 +40,9 @@ class Painter {
     return joint == kNeck ||
            std::find(kTrunkJoints.begin(), kTrunkJoints.end(), joint) != kTrunkJoints.end();
   }
-  bool IsSeen(int joint) const { return Keypoint(joint).confidence >= min_confidence_; }
+  bool IsSeen(int joint) const {
+    return Keypoint(joint).confidence >= min_confidence_ && Keypoint(joint).uv_px().allFinite();
+  }
   const BodyKeypoint& Keypoint(int joint) const { return person_[static_cast<std::size_t>(joint)]; }
   cv::Point At(int joint) const {
     // Far outside the image nothing is painted anyway, and OpenCV wants small numbers.

@@ -8,7 +8,7 @@ namespace airdos {
 
 struct TrustOptions {
   /// People are not believed where the newest frame has at least so many static observations.
-  int min_static_observations = 30;
+  int min_static_observations = 15;
   /// They must bring at least so many motion factors ...
   int min_motion_factors = 20;
   /// ... of which no more than this share was eliminated ...

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <vector>
 
 #include "processes/frontend/frontend_node.h"
@@ -10,6 +11,24 @@
 
 namespace airdos {
 namespace {
+
+/// Says of the even ones of frame 0's landmarks that they are at T_new_old of where they were seen.
+void AddLandmarks(const static_features_t& features, const Se3& T_new_old, map_update_t* update) {
+  for (std::size_t i = 0; i < features.landmark_id.size(); ++i) {
+    if (features.landmark_id[i] % 2 != 0) continue;
+    const auto p_C = SmallStereoCamera().Triangulate(features.u_left_px[i], features.v_px[i],
+                                                     features.u_right_px[i]);
+    if (!p_C) continue;
+    const Eigen::Vector3d p_W = T_new_old * *p_C;  // W is the camera of frame 0
+    update->landmark_id.push_back(features.landmark_id[i]);
+    update->x_W_m.push_back(p_W.x());
+    update->y_W_m.push_back(p_W.y());
+    update->z_W_m.push_back(p_W.z());
+    update->sigma_m.push_back(0.01F);
+    update->num_observations.push_back(2);
+  }
+  update->num_landmarks = static_cast<std::int32_t>(update->landmark_id.size());
+}
 
 TEST(FrontendNode, WaitsForTheUpdateOfTwoFramesBack) {
   FrontendNode node(FrontendOptions{});
@@ -84,21 +103,61 @@ TEST(FrontendNode, UpdatesThatDoNotBelongHereAreRejected) {
   EXPECT_EQ(num_rejected(), 4);
 }
 
-TEST(FrontendNode, TheOptimizersPosesAreTakenOverAtTheLag) {
+TEST(FrontendNode, TheOptimizersWorldIsTakenOverAndTheOdometryFrameStays) {
+  // The optimizer has frame 0 elsewhere and says of every second of its landmarks where it is now.
+  // The others go with their frame: only if both are taken over do they still agree.
   Se3 T_new_old;
   T_new_old.translation = {0.3, -0.2, 0.1};
   FrontendNode node(FrontendOptions{});
   Send(channel::kCalibration, Calibration(), &node);
+  std::set<std::int64_t> first;
   for (int k = 0; k < 6; ++k) {
     SendFrame(k, &node);
     const std::vector<static_features_t> output = StepAll(&node);
     ASSERT_EQ(output.size(), 1u);
-    // Update 0 is in force from frame 2 on, though it was there before frame 1.
-    EXPECT_LT(PositionError_m(output[0], k < 2 ? Truth(k) : T_new_old * Truth(k)), 0.015)
-        << "frame " << k;
+    EXPECT_EQ(output[0].tracking_state, k == 0 ? kInitializing : kTracking);
+    EXPECT_LT(PositionError_m(output[0], Truth(k)), 0.015) << "frame " << k;
+    int num_seen[] = {0, 0};  // of the landmarks of frame 0, with even and odd numbers
+    for (const std::int64_t id : output[0].landmark_id) {
+      if (k == 0) first.insert(id);
+      num_seen[id % 2] += static_cast<int>(first.count(id));
+    }
+    EXPECT_GT(num_seen[0], 20) << "frame " << k;
+    EXPECT_GT(num_seen[1], 20) << "frame " << k;
     map_update_t update = Update(k);
-    if (k == 0) AddFrame(0, T_new_old * Truth(0), &update);
+    if (k == 0) {
+      AddFrame(0, T_new_old * Truth(0), &update);
+      AddLandmarks(output[0], T_new_old, &update);
+    }
     Send(channel::kMapUpdate, update, &node);
+  }
+}
+
+TEST(FrontendNode, LandmarksThatTheOptimizerMovesAreLookedForElsewhere) {
+  // The same without the frame: every second landmark is put where it cannot be.
+  Se3 T_new_old;
+  T_new_old.translation = {0.3, -0.2, 0.1};
+  FrontendNode node(FrontendOptions{});
+  Send(channel::kCalibration, Calibration(), &node);
+  std::set<std::int64_t> moved;
+  for (int k = 0; k < 5; ++k) {
+    SendFrame(k, &node);
+    const std::vector<static_features_t> output = StepAll(&node);
+    ASSERT_EQ(output.size(), 1u);
+    map_update_t update = Update(k);
+    if (k == 0) {
+      AddLandmarks(output[0], T_new_old, &update);
+      moved.insert(update.landmark_id.begin(), update.landmark_id.end());
+    }
+    Send(channel::kMapUpdate, update, &node);
+    std::size_t num_seen = 0;
+    for (const std::int64_t id : output[0].landmark_id) num_seen += moved.count(id);
+    // Update 0 is in force from frame 2 on, though it was there before frame 1.
+    if (k < 2) {
+      EXPECT_GT(num_seen, moved.size() / 2) << "frame " << k;
+    } else {
+      EXPECT_LT(num_seen, moved.size() / 10) << "frame " << k;
+    }
   }
 }
 

@@ -17,6 +17,7 @@ TEST(FrontendNode, AFrameWithoutItsRightImageCoasts) {
   Send(channel::kCalibration, Calibration(), &node);
   for (int k = 0; k < 5; ++k) SendFrame(k, &node);
   EXPECT_EQ(StepAll(&node).size(), 5u);
+  SendNobody(5, &node);
   Send(channel::kCameraLeft, Left(5), &node);
   Send(channel::kPersonMask, NoMask(5), &node);
   EXPECT_FALSE(node.Step());
@@ -42,6 +43,7 @@ TEST(FrontendNode, FeaturesOnPeopleAndAroundThemAreLeftOut) {
   FrontendNode node(options);
   Send(channel::kCalibration, Calibration(), &node);
   for (int k = 0; k < 3; ++k) {
+    SendNobody(k, &node);
     Send(channel::kCameraLeft, Left(k), &node);
     Send(channel::kCameraRight, Right(k), &node);
     Send(channel::kPersonMask, Mask(k, kBegin_px, kEnd_px), &node);
@@ -60,6 +62,7 @@ TEST(FrontendNode, AFrameWhoseMaskIsMissingIsTrackedWithoutIt) {
   FrontendNode node(WithoutFeedback());
   Send(channel::kCalibration, Calibration(), &node);
   for (int k = 0; k < 4; ++k) {
+    SendNobody(k, &node);
     Send(channel::kCameraLeft, Left(k), &node);
     Send(channel::kCameraRight, Right(k), &node);
     if (k != 2) Send(channel::kPersonMask, Mask(k, 0, 150), &node);
@@ -77,6 +80,7 @@ TEST(FrontendNode, AMaskOfAnotherSizeIsRejectedAndTheFrameTracked) {
   FrontendNode node(WithoutFeedback());
   Send(channel::kCalibration, Calibration(), &node);
   SendFrame(0, &node);
+  SendNobody(1, &node);
   Send(channel::kCameraLeft, Left(1), &node);
   Send(channel::kCameraRight, Right(1), &node);
   Send(channel::kPersonMask, Mask(1, 0, 20, {40, 30}), &node);
@@ -92,6 +96,7 @@ TEST(FrontendNode, WithoutMasksTheChannelIsNotRead) {
   options.use_masks = false;
   FrontendNode node(options);
   Send(channel::kCalibration, Calibration(), &node);
+  SendNobody(0, &node);
   Send(channel::kCameraLeft, Left(0), &node);
   Send(channel::kCameraRight, Right(0), &node);
   EXPECT_EQ(StepAll(&node).size(), 1u);
@@ -107,6 +112,7 @@ TEST(FrontendNode, ACorruptJpegIsCountedAndTheFrameCoasts) {
   corrupt.encoding = image_t::ENCODING_JPEG;
   corrupt.data.assign(500, 0x5a);
   corrupt.num_bytes = 500;
+  SendNobody(4, &node);
   Send(channel::kCameraLeft, corrupt, &node);
   Send(channel::kCameraRight, Right(4), &node);
   Send(channel::kPersonMask, NoMask(4), &node);
@@ -122,6 +128,7 @@ TEST(FrontendNode, AnImageOfAnotherSizeIsCountedAndTheFrameCoasts) {
   FrontendNode node(WithoutFeedback());
   Send(channel::kCalibration, Calibration(), &node);
   SendFrame(0, &node);
+  SendNobody(1, &node);
   Send(channel::kCameraLeft, Left(1), &node);
   Send(channel::kCameraRight, ImageOf(cv::Mat(40, 60, CV_8UC1, cv::Scalar(9)), 1), &node);
   Send(channel::kPersonMask, NoMask(1), &node);
@@ -146,6 +153,7 @@ TEST(FrontendNode, PngAndRawGiveTheSameBytes) {
       Send(channel, message, &png);
     }
     Send(channel::kPersonMask, NoMask(k), &png);
+    SendNobody(k, &png);
   }
   const std::vector<static_features_t> a = StepAll(&raw);
   const std::vector<static_features_t> b = StepAll(&png);

@@ -70,6 +70,58 @@ person_mask_t Mask(std::int64_t seq, int begin_px, int end_px) {
   return Mask(seq, begin_px, end_px, {kCamera.width, kCamera.height});
 }
 
+human_observations_t NoHumans(std::int64_t seq, std::int64_t session) {
+  return WithHeader<human_observations_t>(seq, session);
+}
+
+person_keypoints_t NoKeypoints(std::int64_t seq, std::int64_t session) {
+  person_keypoints_t message = WithHeader<person_keypoints_t>(seq, session);
+  message.layout = person_keypoints_t::LAYOUT_COCO18;
+  message.num_joints = 18;
+  return message;
+}
+
+human_observation_t Human(std::int64_t track, const Eigen::Vector3d& place_W, int seq) {
+  human_observation_t human{};
+  human.track_id = track;
+  for (const int joint : kBodyJoints) {
+    const Eigen::Vector3d offset(0.1 * (joint % 3 - 1), joint < 8 ? -0.5 : 0, 0.05 * (joint % 2));
+    const Eigen::Vector3d p_C = Truth(seq).inverse() * (place_W + offset);
+    human.joint_id.push_back(static_cast<std::int8_t>(joint));
+    for (auto* pixels : {&human.u_left_px, &human.v_left_px, &human.u_right_px, &human.v_right_px})
+      pixels->push_back(0);
+    human.sigma_px.push_back(1);
+    human.x_C_m.push_back(static_cast<float>(p_C.x()));
+    human.y_C_m.push_back(static_cast<float>(p_C.y()));
+    human.z_C_m.push_back(static_cast<float>(p_C.z()));
+    human.covariance_C.push_back({1e-4F, 0, 0, 1e-4F, 0, 1e-4F});
+  }
+  human.num_joints = static_cast<std::int32_t>(human.joint_id.size());
+  return human;
+}
+
+person_keypoints_t Keypoints(std::int64_t seq, const cv::Rect& trunk_px, float confidence) {
+  person_keypoints_t message = NoKeypoints(seq);
+  message.num_people = 1;
+  std::vector<float> u_px(18, 0);
+  std::vector<float> v_px(18, 0);
+  std::vector<float> confidences(18, 0);
+  const auto set = [&](int joint, int u, int v) {
+    const auto i = static_cast<std::size_t>(joint);
+    u_px[i] = static_cast<float>(u);
+    v_px[i] = static_cast<float>(v);
+    confidences[i] = confidence;
+  };
+  set(kRightShoulder, trunk_px.x, trunk_px.y);
+  set(kLeftShoulder, trunk_px.x + trunk_px.width, trunk_px.y);
+  set(kRightHip, trunk_px.x, trunk_px.y + trunk_px.height);
+  set(kLeftHip, trunk_px.x + trunk_px.width, trunk_px.y + trunk_px.height);
+  message.u_px = {u_px};
+  message.v_px = {v_px};
+  message.confidence = {confidences};
+  return message;
+}
+
 map_update_t Update(std::int64_t seq, std::int64_t session) {
   map_update_t message = WithHeader<map_update_t>(seq, session);
   message.num_parts = 1;
@@ -85,10 +137,16 @@ void AddFrame(std::int64_t seq, const Se3& T_W_C, map_update_t* message) {
   ++message->num_frames;
 }
 
+void SendNobody(std::int64_t seq, Node* node, std::int64_t session) {
+  Send(channel::kHumanObservations, NoHumans(seq, session), node);
+  Send(channel::kPersonKeypointsLeft, NoKeypoints(seq, session), node);
+}
+
 void SendFrame(int seq, Node* node, std::int64_t session) {
   Send(channel::kCameraLeft, Left(seq, session), node);
   Send(channel::kCameraRight, Right(seq, session), node);
   Send(channel::kPersonMask, NoMask(seq, session), node);
+  SendNobody(seq, node, session);
 }
 
 std::vector<static_features_t> Take(Node* node) {
@@ -109,8 +167,8 @@ std::vector<static_features_t> StepAll(Node* node) {
   return Take(node);
 }
 
-double PositionError_m(const static_features_t& message, const Se3& T_W_C) {
-  return Boxminus(ToSe3(message.position_W_C, message.orientation_W_C), T_W_C).head<3>().norm();
+double PositionError_m(const static_features_t& message, const Se3& T_O_C) {
+  return Boxminus(ToSe3(message.position_O_C, message.orientation_O_C), T_O_C).head<3>().norm();
 }
 
 FrontendOptions WithoutFeedback() {

@@ -45,7 +45,16 @@ void Send(const std::string& channel, const Message& message, Node* node) {
   const std::vector<std::uint8_t> bytes = Encode(message);
   node->Receive(channel, bytes.data(), bytes.size());
 }
-/// Both images and an empty mask.
+human_observations_t NoHumans(std::int64_t seq, std::int64_t session = kSession);
+person_keypoints_t NoKeypoints(std::int64_t seq, std::int64_t session = kSession);
+/// Somebody seen from frame `seq`: body joints around `place_W`, one centimetre of deviation.
+human_observation_t Human(std::int64_t track, const Eigen::Vector3d& place_W, int seq);
+/// Somebody whose trunk is a rectangle of the left image, as a detector of COCO-18 gives it.
+person_keypoints_t Keypoints(std::int64_t seq, const cv::Rect& trunk_px, float confidence);
+
+/// Nobody on the channels of people, as while nobody is in view.
+void SendNobody(std::int64_t seq, Node* node, std::int64_t session = kSession);
+/// Both images, an empty mask and nobody.
 void SendFrame(int seq, Node* node, std::int64_t session = kSession);
 
 /// What was published since the last call; every message must be valid.
@@ -53,7 +62,7 @@ std::vector<static_features_t> Take(Node* node);
 /// Works until nothing is ready.
 std::vector<static_features_t> StepAll(Node* node);
 
-double PositionError_m(const static_features_t& message, const Se3& T_W_C);
+double PositionError_m(const static_features_t& message, const Se3& T_O_C);
 
 FrontendOptions WithoutFeedback();
 

@@ -117,19 +117,27 @@ TEST(FrontendNode, TheOrderInWhichChannelsArriveDoesNotMatter) {
   Stream left;
   Stream right;
   Stream mask;
+  Stream humans;
+  Stream keypoints;
   for (int k = 0; k < kNumFrames; ++k) {
     left.push_back(Wrap(channel::kCameraLeft, Left(k)));
     if (k != 3) right.push_back(Wrap(channel::kCameraRight, Right(k)));  // one is lost
     mask.push_back(Wrap(channel::kPersonMask, Mask(k, 10 * k, 10 * k + 60)));
+    human_observations_t people = NoHumans(k);
+    people.num_humans = 1;
+    people.humans = {Human(3, {0.1 * k, 0, 4}, k)};
+    if (k != 4) humans.push_back(Wrap(channel::kHumanObservations, people));
+    keypoints.push_back(
+        Wrap(channel::kPersonKeypointsLeft, Keypoints(k, {150 + 5 * k, 50, 20, 40}, 0.9F)));
   }
   const Stream calibration = {Wrap(channel::kCalibration, Calibration())};
-  const auto expected = Outputs({calibration, left, right, mask}, 1, true);
+  const auto expected = Outputs({calibration, left, right, mask, humans, keypoints}, 1, true);
   ASSERT_EQ(expected.size(), static_cast<std::size_t>(kNumFrames));
-  EXPECT_EQ(Outputs({mask, right, left, calibration}, 1, true), expected);
-  EXPECT_EQ(Outputs({right, calibration, mask, left}, 2, true), expected);
-  EXPECT_EQ(Outputs({left, mask, right, calibration}, 100, true), expected);
-  EXPECT_EQ(Outputs({calibration, left, right, mask}, 1, false), expected);
-  EXPECT_EQ(Outputs({mask, left, right, calibration}, 100, false), expected);
+  EXPECT_EQ(Outputs({keypoints, mask, right, left, calibration, humans}, 1, true), expected);
+  EXPECT_EQ(Outputs({humans, right, keypoints, calibration, mask, left}, 2, true), expected);
+  EXPECT_EQ(Outputs({left, mask, right, calibration, humans, keypoints}, 100, true), expected);
+  EXPECT_EQ(Outputs({calibration, left, right, mask, humans, keypoints}, 1, false), expected);
+  EXPECT_EQ(Outputs({keypoints, mask, left, right, calibration, humans}, 100, false), expected);
 }
 
 TEST(FrontendOptions, TheFileHasEveryKeyAndTheDefaults) {
@@ -165,10 +173,24 @@ TEST(FrontendOptions, TheFileHasEveryKeyAndTheDefaults) {
   EXPECT_EQ(a.corner_sigma_px, b.corner_sigma_px);
   EXPECT_EQ(a.max_observations, b.max_observations);
   EXPECT_EQ(a.observation_cell_px, b.observation_cell_px);
-  EXPECT_EQ(a.prior_min_sigma_position_m, b.prior_min_sigma_position_m);
-  EXPECT_EQ(a.prior_max_sigma_position_m, b.prior_max_sigma_position_m);
-  EXPECT_EQ(a.prior_min_sigma_orientation_rad, b.prior_min_sigma_orientation_rad);
-  EXPECT_EQ(a.prior_max_sigma_orientation_rad, b.prior_max_sigma_orientation_rad);
+  EXPECT_EQ(a.motion.linear_start_m_s2, b.motion.linear_start_m_s2);
+  EXPECT_EQ(a.motion.linear_floor_m_s2, b.motion.linear_floor_m_s2);
+  EXPECT_EQ(a.motion.linear_ceiling_m_s2, b.motion.linear_ceiling_m_s2);
+  EXPECT_EQ(a.motion.angular_start_rad_s2, b.motion.angular_start_rad_s2);
+  EXPECT_EQ(a.motion.angular_floor_rad_s2, b.motion.angular_floor_rad_s2);
+  EXPECT_EQ(a.motion.angular_ceiling_rad_s2, b.motion.angular_ceiling_rad_s2);
+  EXPECT_EQ(a.motion.initial_speed_m_s, b.motion.initial_speed_m_s);
+  EXPECT_EQ(a.motion.initial_turn_rad_s, b.motion.initial_turn_rad_s);
+  EXPECT_EQ(a.motion.memory_s, b.motion.memory_s);
+  EXPECT_EQ(a.people.acceleration_m_s2, b.people.acceleration_m_s2);
+  EXPECT_EQ(a.people.initial_speed_m_s, b.people.initial_speed_m_s);
+  EXPECT_EQ(a.people.wobble_m, b.people.wobble_m);
+  EXPECT_EQ(a.people.max_joint_sigmas, b.people.max_joint_sigmas);
+  EXPECT_EQ(a.people.max_missed_frames, b.people.max_missed_frames);
+  EXPECT_EQ(a.people.min_seen_frames, b.people.min_seen_frames);
+  EXPECT_EQ(a.max_static_for_people, b.max_static_for_people);
+  EXPECT_EQ(options.use_people, defaults.use_people);
+  EXPECT_EQ(options.min_keypoint_confidence, defaults.min_keypoint_confidence);
 }
 
 }  // namespace

@@ -94,8 +94,8 @@ TEST(ValidateTest, StaticFeatures) {
   ExpectReject<M>("tracking_state 0", [](M* m) { m->tracking_state = 0; });
   ExpectReject<M>("tracking_state 5", [](M* m) { m->tracking_state = 5; });
   ExpectReject<M>("position_O_C nan", [](M* m) { m->position_O_C[2] = kNan; });
-  ExpectReject<M>("orientation_W_C 1.1", [](M* m) { m->orientation_W_C[0] = 1.1; });
-  ExpectReject<M>("orientation_W_C nan", [](M* m) { m->orientation_W_C[0] = kNan; });
+  ExpectReject<M>("orientation_O_C 1.1", [](M* m) { m->orientation_O_C[0] = 1.1; });
+  ExpectReject<M>("orientation_O_C nan", [](M* m) { m->orientation_O_C[0] = kNan; });
   ExpectReject<M>("sigma_position_m", [](M* m) { m->sigma_position_m = -1; });
   ExpectReject<M>("sigma_orientation_rad", [](M* m) { m->sigma_orientation_rad = kNan; });
   ExpectReject<M>("num_masked", [](M* m) { m->num_masked = -1; });

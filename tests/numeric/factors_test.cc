@@ -197,6 +197,17 @@ TEST(VelocitySmoothnessFactorTest, ValueAndDerivatives) {
   ExpectDerivativesMatch(factor, {Block(v), Block(faster)});
 }
 
+TEST(VelocityPriorFactorTest, ZeroValueAndDerivatives) {
+  const VelocityPriorFactor factor(0.5);
+  EXPECT_EQ(Residual(factor, {Block(Eigen::Vector3d(0, 0, 0))}).norm(), 0);
+  // By hand: 1 m/s at sigma 0.5 m/s are 2.
+  EXPECT_LT(
+      (Residual(factor, {Block(Eigen::Vector3d(1, -0.5, 0.25))}) - Eigen::Vector3d(2, -1, 0.5))
+          .norm(),
+      kExact);
+  ExpectDerivativesMatch(factor, {Block(Eigen::Vector3d(0.7, -0.3, 1.2))});
+}
+
 TEST(PartMotionFactorTest, ValueAndDerivatives) {
   std::mt19937 generator(4);
   const Eigen::Vector3d centroid(5, -1, 7), p(5.2, -1.1, 7.3);

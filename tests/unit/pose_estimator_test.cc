@@ -205,6 +205,117 @@ TEST(PoseEstimator, EachSigmaOfThePriorHoldsItsOwnAxes) {
   EXPECT_NEAR(std::abs(turn[4]), 0.4 / 8, 0.003);
 }
 
+/// By how much the camera moves along x, m, to meet one point straight ahead that it sees 1 px to
+/// the left, while the prior holds its turn: the point is known to `covariance_W`.
+double MetBy_m(const Eigen::Matrix3d& covariance_W, bool has_right) {
+  PoseObservation observation;
+  observation.p_W = {0, 0, 4};
+  observation.uvu_px = kCamera.ProjectStereo(observation.p_W) - Eigen::Vector3d(1, 0, 1);
+  observation.has_right = has_right;
+  observation.sigma_px = 0.8;
+  observation.covariance_W = covariance_W;
+  const PosePrior prior = IsotropicPrior(Se3(), 0.02, 1e-6);
+  return EstimatePose(kCamera, {observation}, Se3(), prior).T_W_C.translation.x();
+}
+
+TEST(PoseEstimator, APointThatIsBadlyKnownWeighsLess) {
+  // By hand, for the left image alone: one pixel is s = 4 m / fx; the prior's variance is p, the
+  // point's along x is c, the pixel's is 0.8^2: the camera moves by s p / (p + c + (0.8 s)^2).
+  const double s_m = 4 / kCamera.fx_px;
+  const double p_m2 = 0.02 * 0.02;
+  for (const double sigma_m : {0.0, 0.01, 0.05}) {
+    const Eigen::Matrix3d covariance_W = Eigen::Vector3d(sigma_m * sigma_m, 0, 0).asDiagonal();
+    const double pixel_m2 = 0.64 * s_m * s_m;
+    const double expected_m = s_m * p_m2 / (p_m2 + sigma_m * sigma_m + pixel_m2);
+    EXPECT_NEAR(MetBy_m(covariance_W, false), expected_m, 1e-6) << sigma_m;
+  }
+  // Both images see x, and both err with the point: a well known one weighs twice as much then, a
+  // badly known one no more than before. (The right image also moves the depth a little.)
+  const Eigen::Matrix3d bad = Eigen::Vector3d(0.0025, 0, 0).asDiagonal();
+  EXPECT_NEAR(MetBy_m(Eigen::Matrix3d::Zero(), true), s_m * p_m2 / (p_m2 + 0.32 * s_m * s_m), 2e-5);
+  EXPECT_NEAR(MetBy_m(bad, true), s_m * p_m2 / (p_m2 + 0.0025 + 0.32 * s_m * s_m), 2e-5);
+  // How far away it is says nothing of x where it is straight ahead.
+  const Eigen::Matrix3d deep = Eigen::Vector3d(0, 0, 0.0025).asDiagonal();
+  EXPECT_NEAR(MetBy_m(deep, false), MetBy_m(Eigen::Matrix3d::Zero(), false), 1e-6);
+}
+
+TEST(PoseEstimator, ThePointsCovarianceIsInTheWorldsAxes) {
+  // Half of the points are shifted by 10 cm along W's x, and known to be bad along it.
+  std::vector<PoseObservation> observations = Observe(60, 0, 3);
+  for (PoseObservation& observation : observations) observation.sigma_px = 0.1;
+  for (std::size_t i = 0; i < observations.size(); i += 2) {
+    observations[i].p_W.x() += 0.1;
+    observations[i].covariance_W = Eigen::Vector3d(1, 0, 0).asDiagonal();
+  }
+  const PoseEstimate good = EstimatePose(kCamera, observations, StartOff(), std::nullopt);
+  EXPECT_LT(Error(good.T_W_C, TruePose()), 1e-3);
+  EXPECT_EQ(good.num_inliers, 60);
+  for (std::size_t i = 0; i < observations.size(); i += 2)
+    observations[i].covariance_W = Eigen::Vector3d(0, 0, 1).asDiagonal();
+  const PoseEstimate bad = EstimatePose(kCamera, observations, StartOff(), std::nullopt);
+  EXPECT_LT(bad.num_inliers, 40);
+}
+
+TEST(PoseEstimator, ExactPointsAreTheLimitOfWellKnownOnes) {
+  const std::vector<PoseObservation> exact = Observe(30, 0.5, 9);
+  std::vector<PoseObservation> known = exact;
+  for (PoseObservation& observation : known)
+    observation.covariance_W = 1e-14 * Eigen::Matrix3d::Identity();
+  const PoseEstimate a = EstimatePose(kCamera, exact, StartOff(), std::nullopt);
+  const PoseEstimate b = EstimatePose(kCamera, known, StartOff(), std::nullopt);
+  EXPECT_LT(Error(a.T_W_C, b.T_W_C), 1e-8);
+  EXPECT_EQ(a.is_inlier, b.is_inlier);
+  EXPECT_LT((a.information - b.information).norm(), 1e-6 * a.information.norm());
+}
+
+TEST(PoseEstimator, TheInformationIsThatOfTheInliersAlone) {
+  std::vector<PoseObservation> observations = Observe(30, 0, 9);
+  for (PoseObservation& observation : observations) observation.sigma_px = 0.5;
+  const Matrix6d expected = Covariance(observations, 0.5).inverse();
+  observations.push_back(observations.front());
+  observations.back().uvu_px.x() += 50;
+  const PosePrior prior = IsotropicPrior(TruePose(), 0.01, 0.01);
+  const PoseEstimate estimate = EstimatePose(kCamera, observations, TruePose(), prior);
+  EXPECT_EQ(estimate.num_inliers, 30);
+  EXPECT_LT((estimate.information - expected).norm(), 1e-6 * expected.norm());
+}
+
+/// Seen from a pose 30 cm off the prior of 2 cm.
+PoseEstimate EstimateFarFromThePrior(int count) {
+  Vector6d off = Vector6d::Zero();
+  off[0] = 0.3;
+  const PosePrior prior = IsotropicPrior(Boxplus(TruePose(), off), 0.02, 0.001);
+  return EstimatePose(kCamera, Observe(count, 0, 4), prior.T_W_C, prior);
+}
+
+TEST(PoseEstimator, FewObservationsMustBeOnesThatThePriorAllows) {
+  Vector6d off = Vector6d::Zero();
+  off[0] = 0.3;
+  // However well they agree with each other.
+  const PoseEstimate few = EstimateFarFromThePrior(19);
+  EXPECT_EQ(few.num_inliers, 0);
+  EXPECT_LT(Error(few.T_W_C, Boxplus(TruePose(), off)), 1e-9);
+  EXPECT_EQ(few.information, Matrix6d(Matrix6d::Zero()));
+  // Many overrule the prior, but for what it is worth against them.
+  const PoseEstimate many = EstimateFarFromThePrior(60);
+  EXPECT_EQ(many.num_inliers, 60);
+  EXPECT_LT(Error(many.T_W_C, TruePose()), 0.1 * 0.3);
+}
+
+TEST(PoseEstimator, OfFewObservationsTheImpossibleOnesStayOut) {
+  // Six good ones, and six that agree on a pose 1 m away: without the prior's word either could
+  // win.
+  std::vector<PoseObservation> observations = Observe(12, 0, 4);
+  for (std::size_t i = 6; i < 12; ++i) {
+    observations[i].uvu_px = kCamera.ProjectStereo(TruePose().inverse() * observations[i].p_W +
+                                                   Eigen::Vector3d(0, 1, 0));
+  }
+  const PosePrior prior = IsotropicPrior(TruePose(), 0.02, 0.01);
+  const PoseEstimate estimate = EstimatePose(kCamera, observations, TruePose(), prior);
+  EXPECT_LT(Error(estimate.T_W_C, TruePose()), 1e-9);
+  for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(estimate.is_inlier[i], i < 6);
+}
+
 TEST(PoseEstimator, PointsBehindTheCameraAreNoInliers) {
   std::vector<PoseObservation> observations = Observe(30, 0, 4, false);
   for (std::size_t i = 0; i < 10; ++i) {
