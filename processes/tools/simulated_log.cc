@@ -52,14 +52,37 @@ Envelope Calibration(const SimulationOptions& options, const Header& header) {
   return {channel::kCalibration, Encode(message)};
 }
 
-Envelope StaticFeatures(const SimulationOptions& options, const SimulatedFrame& frame,
-                        const Header& header) {
+/// By how much constant velocity is wrong from frame to frame, per axis: translation (m) and
+/// rotation (rad). What a front end would have learnt of its carrier, generously as ours.
+struct CarrierSigma {
+  double position_m = 0;
+  double orientation_rad = 0;
+};
+
+CarrierSigma SigmaOfCarrier(const SimulatedSequence& sequence) {
+  constexpr double kGenerosity = 3;
+  double linear = 0, angular = 0;
+  int num = 0;
+  for (std::size_t k = 2; k < sequence.frames.size(); ++k) {
+    const Se3& before = sequence.frames[k - 1].T_W_C;
+    const Vector6d step = Boxminus(before, sequence.frames[k - 2].T_W_C);
+    const Vector6d change = Boxminus(sequence.frames[k].T_W_C, Boxplus(before, step));
+    linear += change.head<3>().squaredNorm();
+    angular += change.tail<3>().squaredNorm();
+    num += 3;
+  }
+  if (num == 0) return {};
+  return {kGenerosity * std::sqrt(linear / num), kGenerosity * std::sqrt(angular / num)};
+}
+
+Envelope StaticFeatures(const SimulationOptions& options, const CarrierSigma& carrier,
+                        const SimulatedFrame& frame, const Header& header) {
   auto message = MessageOf<static_features_t>(header);
   message.tracking_state =
       header.seq == 0 ? +static_features_t::STATE_INITIALIZING : +static_features_t::STATE_TRACKING;
   FromSe3(frame.T_W_C_odometry, message.position_O_C, message.orientation_O_C);
-  message.sigma_position_m = options.odometry_sigma_m;
-  message.sigma_orientation_rad = options.odometry_sigma_deg * M_PI / 180;
+  message.sigma_position_m = carrier.position_m;
+  message.sigma_orientation_rad = carrier.orientation_rad;
   message.num_features = static_cast<std::int32_t>(frame.static_points.size());
   message.num_detected = message.num_matched = message.num_features;
   for (const SimulatedMeasurement& seen : frame.static_points) {
@@ -127,6 +150,7 @@ std::vector<std::vector<Envelope>> SimulatedMessages(const SimulatedSequence& se
   constexpr std::int64_t kCalibrationPeriod_us = 1000000;
   std::vector<std::vector<Envelope>> frames;
   std::int64_t next_calibration_us = 0;
+  const CarrierSigma carrier = SigmaOfCarrier(sequence);
   for (const SimulatedFrame& frame : sequence.frames) {
     const Header header{static_cast<std::int64_t>(std::llround(frame.time_s * 1e6)),
                         static_cast<std::int64_t>(frames.size()), session};
@@ -135,7 +159,7 @@ std::vector<std::vector<Envelope>> SimulatedMessages(const SimulatedSequence& se
       messages.push_back(Calibration(sequence.options, header));
       next_calibration_us = header.utime + kCalibrationPeriod_us;
     }
-    messages.push_back(StaticFeatures(sequence.options, frame, header));
+    messages.push_back(StaticFeatures(sequence.options, carrier, frame, header));
     messages.push_back(HumanObservations(sequence, frame, header));
     messages.push_back(GroundTruth(frame, header));
     frames.push_back(std::move(messages));
