@@ -140,6 +140,8 @@ class VisualOdometry {
   std::optional<LandmarkSighting> SightOne(const View& view, const VisibleLandmark& visible,
                                            const Feature* feature) const;
   std::vector<LandmarkSighting> KeepSpread(std::vector<LandmarkSighting> sightings) const;
+  /// Judges, moves on and makes landmarks once the frame's pose is known.
+  void UpdateMap(const View& view, const std::vector<LandmarkId>& tried, OdometryFrame* frame);
   void UpdateLandmarks(const View& view, const Se3& T_W_C,
                        const std::vector<LandmarkSighting>& sightings);
   void CreateLandmarks(const View& view, const Se3& T_W_C, const TrustField& field,
