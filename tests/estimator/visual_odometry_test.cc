@@ -148,7 +148,8 @@ StereoImagePair FrameWithWalkers(int k) {
   constexpr int kWidth_px = 80;
   static const cv::Mat kCloth = NoisePicture(kWidth_px, kCamera.height, 5);
   const StereoPair& pair = Walk(k);
-  StereoImagePair images{FrameId{k}, kFrameStep_s * k, pair.left.clone(), pair.right.clone(), {}, {}};
+  StereoImagePair images{FrameId{k}, kFrameStep_s * k, pair.left.clone(), pair.right.clone(), {},
+                         {}};
   const auto draw = [](int begin, cv::Mat* image) {
     const cv::Rect card =
         cv::Rect(begin, 0, kWidth_px, image->rows) & cv::Rect(0, 0, image->cols, image->rows);

@@ -154,8 +154,7 @@ SyntheticScene MakeSyntheticScene(const SyntheticSceneOptions& options) {
       Vector6d noise;
       noise << Noise(&generator, options.odometry_sigma_m),
           Noise(&generator, options.odometry_sigma_rad);
-      T_O_C =
-          Boxplus(T_O_C * (scene.T_W_C[k - 1].inverse() * scene.T_W_C[k]), noise);
+      T_O_C = Boxplus(T_O_C * (scene.T_W_C[k - 1].inverse() * scene.T_W_C[k]), noise);
     }
     FrameInput input;
     input.id.value = frame;
