@@ -202,6 +202,12 @@ void SlidingWindowOptimizer::LearnCarrier(const FrameInput& input) {
     return;
   const double step_s = input.time_s - trajectory_.back().time_s;
   if (!(step_s > 0)) return;
+  if (trajectory_.size() >= 2) {
+    // Over a jump of the clock the front end took a step as before: its sigma is not of this step.
+    const double last_step_s =
+        trajectory_.back().time_s - trajectory_[trajectory_.size() - 2].time_s;
+    if (last_step_s > 0 && step_s >= 10 * last_step_s) return;
+  }
   const double factor = options_.camera_motion.sigma_factor / (step_s * step_s);
   carrier_ = AccelerationSigma{factor * *input.motion_sigma_position_m,
                                factor * *input.motion_sigma_orientation_rad};

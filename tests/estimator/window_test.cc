@@ -55,6 +55,21 @@ TEST(SlidingWindowTest, NoiseGivesASmallError) {
   }
 }
 
+TEST(SlidingWindowTest, AJumpOfTheClockDoesNotPullTheCameraBack) {
+  SyntheticSceneOptions options;
+  options.num_frames = 20;
+  options.max_static_per_frame = 12;
+  SyntheticScene scene = MakeSyntheticScene(options);
+  for (std::size_t k = 0; k < scene.frames.size(); ++k) {
+    scene.frames[k].motion_sigma_position_m = 0.03;
+    scene.frames[k].motion_sigma_orientation_rad = 0.03;
+    if (k >= 12) scene.frames[k].time_s += 60;
+  }
+  const double error_m = RmsPositionError(Poses(RunAll(StaticOnly(), scene)), scene.T_W_C);
+  std::cout << "rms error, m: " << error_m << "\n";
+  EXPECT_LT(error_m, 0.03);
+}
+
 TEST(SlidingWindowTest, OutliersAreThrownOut) {
   SyntheticSceneOptions options;
   options.num_frames = 30;
