@@ -15,7 +15,7 @@ struct FeatureStereoMatcherOptions {
   double min_disparity_px = 0.7;  ///< farther than this the depth says nothing
   int max_hamming = 75;           ///< bits
   double max_row_error_px = 1.5;  ///< of a rectified pair, at the feature's level
-  double min_correlation = 0.95;  ///< of the aligned patch
+  double min_correlation = 0.92;  ///< of the aligned patch
 };
 
 /// Where the features of the left image are in the right image of a rectified pair.

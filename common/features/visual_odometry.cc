@@ -47,7 +47,7 @@ std::set<LandmarkId> IdsOf(const std::vector<LandmarkSighting>& sightings) {
 OdometryFrame VisualOdometry::Process(const StereoCamera& camera, const StereoImagePair& images) {
   AIRDOS_CHECK(images.left.cols == camera.width && images.left.rows == camera.height);
   AIRDOS_CHECK(images.right.size() == images.left.size());
-  const View view(camera, images, options_, extractor_);
+  const View view(camera, images, options_, StereoOptions(), extractor_);
   const bool is_first = recent_.empty();
   const double step_s = StepTo(images.time_s);
   const PosePrior prior = Predict(step_s);
@@ -153,6 +153,14 @@ void VisualOdometry::Apply(const MapCorrection& correction) {
   const Se3 T_Wold_C = map_.poses_W_C().at(recent_.back().first);
   map_.Apply(correction);
   people_.Transform(map_.poses_W_C().at(recent_.back().first) * T_Wold_C.inverse());
+}
+
+FeatureStereoMatcherOptions VisualOdometry::StereoOptions() const {
+  FeatureStereoMatcherOptions stereo = options_.stereo;
+  if (num_static_ >= options_.rich_observations) {
+    stereo.min_correlation = std::max(stereo.min_correlation, options_.rich_min_correlation);
+  }
+  return stereo;
 }
 
 double VisualOdometry::StepTo(double time_s) const {

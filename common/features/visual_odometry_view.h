@@ -21,7 +21,8 @@ struct VisualOdometry::View {
   int num_masked = 0;
 
   View(const StereoCamera& camera_in, const StereoImagePair& images_in,
-       const VisualOdometryOptions& options, const FeatureExtractor& extractor)
+       const VisualOdometryOptions& options, const FeatureStereoMatcherOptions& stereo_options,
+       const FeatureExtractor& extractor)
       : camera(camera_in),
         images(images_in),
         left(std::make_shared<ImagePyramid>(images_in.left, options.extractor.num_levels)),
@@ -30,7 +31,7 @@ struct VisualOdometry::View {
     left_features = extractor.Extract(*left, images.mask, &num_masked);
     right_features = extractor.Extract(right, cv::Mat(), &num_masked_right);
     grid = std::make_unique<FeatureGrid>(left_features, camera.width, camera.height);
-    stereo = std::make_unique<FeatureStereoMatcher>(options.stereo, camera, *left, right,
+    stereo = std::make_unique<FeatureStereoMatcher>(stereo_options, camera, *left, right,
                                                     right_features);
   }
 };

@@ -224,6 +224,8 @@ FrontendOptions ReadFrontendOptions(ConfigReader* config) {
   config->Read("stereo.max_row_error_px", &odometry.stereo.max_row_error_px, 0.5, 10);
   config->Read("stereo.max_hamming_bits", &odometry.stereo.max_hamming, 1, 256);
   config->Read("stereo.min_correlation", &odometry.stereo.min_correlation, 0, 1);
+  config->Read("stereo.rich_observations", &odometry.rich_observations, 1, 100000);
+  config->Read("stereo.rich_min_correlation", &odometry.rich_min_correlation, 0, 1);
   config->Read("map.max_landmarks", &odometry.map.max_landmarks, 100, 100000);
   config->Read("map.max_frames_unconfirmed", &odometry.map.max_frames_unconfirmed, 1, 1000);
   config->Read("map.min_found_ratio", &odometry.map.min_found_ratio, 0, 1);

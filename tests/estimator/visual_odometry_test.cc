@@ -114,6 +114,22 @@ TEST(VisualOdometry, LandmarksAreSeenAgain) {
   EXPECT_GT(num_again, frames[0].sightings.size() / 4);
 }
 
+TEST(VisualOdometry, WhereLandmarksAboundOnlyBetterStereoMatchesAreTaken) {
+  const auto num_matched = [](int rich_observations) {
+    VisualOdometryOptions options;
+    options.rich_observations = rich_observations;
+    options.rich_min_correlation = 0.999;  // which few patches reach
+    VisualOdometry odometry(options);
+    odometry.Process(kCamera, Frame(0));
+    const OdometryFrame frame = odometry.Process(kCamera, Frame(1));
+    return std::count_if(frame.sightings.begin(), frame.sightings.end(),
+                         [](const LandmarkSighting& sighting) { return sighting.has_right; });
+  };
+  const auto num_of_any = num_matched(/*rich_observations=*/100000);
+  EXPECT_GT(num_of_any, 60);
+  EXPECT_LT(num_matched(/*rich_observations=*/60), num_of_any / 2);
+}
+
 TEST(VisualOdometry, AMaskOverMostOfTheImageIsKeptFreeAndSurvived) {
   // People in three quarters of the image, moving to and fro.
   const auto mask_of = [](int k) {
