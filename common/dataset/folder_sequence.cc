@@ -43,20 +43,28 @@ std::string FolderSequence::PeopleFolder(const std::string& name) const {
   return contents_.people_subfolder.empty() ? folder : folder + "/" + contents_.people_subfolder;
 }
 
-SequenceFrame FolderSequence::Load(std::size_t index) const {
+FrameFiles FolderSequence::files(std::size_t index) const {
   AIRDOS_CHECK(index < num_frames());
   const std::string& folder = contents_.folder;
   const std::string stem = fs::path(contents_.left_names[index]).stem().string();
+  FrameFiles files;
+  files.left_image = folder + "/" + contents_.left_folder + "/" + contents_.left_names[index];
+  files.right_image = folder + "/" + contents_.right_folder + "/" + contents_.right_names[index];
+  files.person_mask = PeopleFolder("rcnnseg_image_0") + "/" + stem + ".png";
+  files.keypoints_left = PeopleFolder("alphapose_0") + "/" + stem + ".txt";
+  files.keypoints_right = PeopleFolder("alphapose_1") + "/" + stem + ".txt";
+  return files;
+}
+
+SequenceFrame FolderSequence::Load(std::size_t index) const {
+  const FrameFiles names = files(index);
   SequenceFrame frame;
   frame.utime = contents_.utimes[index];
-  frame.left_image_file =
-      ReadImageFile(folder + "/" + contents_.left_folder + "/" + contents_.left_names[index]);
-  frame.right_image_file =
-      ReadImageFile(folder + "/" + contents_.right_folder + "/" + contents_.right_names[index]);
-  const std::string mask = PeopleFolder("rcnnseg_image_0") + "/" + stem + ".png";
-  if (fs::exists(mask)) frame.person_mask_file = ReadImageFile(mask);
-  frame.keypoints_left = ReadKeypoints(PeopleFolder("alphapose_0") + "/" + stem + ".txt");
-  frame.keypoints_right = ReadKeypoints(PeopleFolder("alphapose_1") + "/" + stem + ".txt");
+  frame.left_image_file = ReadImageFile(names.left_image);
+  frame.right_image_file = ReadImageFile(names.right_image);
+  if (fs::exists(names.person_mask)) frame.person_mask_file = ReadImageFile(names.person_mask);
+  frame.keypoints_left = ReadKeypoints(names.keypoints_left);
+  frame.keypoints_right = ReadKeypoints(names.keypoints_right);
   frame.ground_truth = contents_.ground_truth[index];
   return frame;
 }

@@ -35,6 +35,11 @@ class FolderSequence : public StereoSequence {
   TrajectoryAxes ground_truth_axes() const override { return contents_.axes; }
   bool has_people() const override { return has_people_; }
   SequenceFrame Load(std::size_t index) const override;
+  std::int64_t utime(std::size_t index) const override { return contents_.utimes[index]; }
+  std::optional<Se3> ground_truth(std::size_t index) const override {
+    return contents_.ground_truth[index];
+  }
+  FrameFiles files(std::size_t index) const override;
   std::vector<std::string> notes() const override { return contents_.notes; }
 
  private:

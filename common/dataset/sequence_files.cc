@@ -144,7 +144,7 @@ std::vector<std::int64_t> ReadTimes(const std::string& path) {
   return times;
 }
 
-std::vector<PersonKeypoints> ReadKeypoints(const std::string& path) {
+std::vector<PersonKeypoints> ReadRawKeypoints(const std::string& path) {
   std::vector<PersonKeypoints> people;
   if (!fs::exists(path)) return people;
   for (const TextLine& line : ReadTextLines(path)) {
@@ -156,9 +156,18 @@ std::vector<PersonKeypoints> ReadKeypoints(const std::string& path) {
     }
     for (std::size_t j = 0; j < person.size(); ++j) {
       person[j] = {static_cast<float>(numbers[3 * j]), static_cast<float>(numbers[3 * j + 1]),
-                   static_cast<float>(std::clamp(numbers[3 * j + 2], 0.0, 1.0))};
+                   static_cast<float>(numbers[3 * j + 2])};
     }
     people.push_back(person);
+  }
+  return people;
+}
+
+std::vector<PersonKeypoints> ReadKeypoints(const std::string& path) {
+  std::vector<PersonKeypoints> people = ReadRawKeypoints(path);
+  for (PersonKeypoints& person : people) {
+    for (Keypoint& keypoint : person)
+      keypoint.confidence = std::clamp(keypoint.confidence, 0.F, 1.F);
   }
   return people;
 }

@@ -33,6 +33,8 @@ std::vector<std::int64_t> ReadTimes(const std::string& path);
 
 /// People of one image: rows of 54 numbers. No file: nobody. Confidences are clamped to [0, 1].
 std::vector<PersonKeypoints> ReadKeypoints(const std::string& path);
+/// The same with the confidences as they stand there.
+std::vector<PersonKeypoints> ReadRawKeypoints(const std::string& path);
 
 /// Rows of 3 x 4 numbers, [R t] row major.
 std::vector<Se3> ReadKittiPoses(const std::string& path);

@@ -39,6 +39,15 @@ struct SequenceFrame {
   std::optional<Se3> ground_truth;  ///< camera in its world, in ground_truth_axes()
 };
 
+/// The files that one frame is read from, for findings that are to name them. Empty: not known.
+struct FrameFiles {
+  std::string left_image;
+  std::string right_image;
+  std::string person_mask;  ///< need not exist; the same of the next two
+  std::string keypoints_left;
+  std::string keypoints_right;
+};
+
 /// A recorded stereo sequence on disk. Every reader throws InputError naming the file (and line)
 /// that cannot be used.
 class StereoSequence {
@@ -49,6 +58,11 @@ class StereoSequence {
   virtual TrajectoryAxes ground_truth_axes() const = 0;
   virtual bool has_people() const = 0;  ///< whether the layout holds keypoints at all
   virtual SequenceFrame Load(std::size_t index) const = 0;
+  virtual std::int64_t utime(std::size_t index) const { return Load(index).utime; }  ///< us
+  virtual std::optional<Se3> ground_truth(std::size_t index) const {
+    return Load(index).ground_truth;
+  }
+  virtual FrameFiles files(std::size_t /*index*/) const { return {}; }
   /// What had to be assumed about the folder (calibration, frame rate, axes), one sentence each:
   /// for the user to read.
   virtual std::vector<std::string> notes() const { return {}; }

@@ -1,14 +1,10 @@
 #include "processes/node/keypoint_messages.h"
 
 #include <cstddef>
-#include <optional>
-
-#include "common/human/layouts.h"
 
 namespace airdos {
-namespace {
 
-std::optional<KeypointLayout> ToLayout(int layout) {
+std::optional<KeypointLayout> LayoutOf(int layout) {
   switch (layout) {
     case person_keypoints_t::LAYOUT_COCO18:
       return KeypointLayout::kCoco18;
@@ -21,18 +17,23 @@ std::optional<KeypointLayout> ToLayout(int layout) {
   }
 }
 
-}  // namespace
-
-std::vector<BodyKeypoints> ToPeople(const person_keypoints_t& message) {
-  std::vector<BodyKeypoints> people;
-  const std::optional<KeypointLayout> layout = ToLayout(message.layout);
-  if (!layout) return people;
+std::vector<std::vector<BodyKeypoint>> ToDetections(const person_keypoints_t& message) {
+  std::vector<std::vector<BodyKeypoint>> detections;
   for (std::size_t person = 0; person < message.u_px.size(); ++person) {
-    std::vector<BodyKeypoint> keypoints;
+    std::vector<BodyKeypoint>& keypoints = detections.emplace_back();
     for (std::size_t joint = 0; joint < message.u_px[person].size(); ++joint) {
       keypoints.push_back({message.u_px[person][joint], message.v_px[person][joint],
                            message.confidence[person][joint]});
     }
+  }
+  return detections;
+}
+
+std::vector<BodyKeypoints> ToPeople(const person_keypoints_t& message) {
+  std::vector<BodyKeypoints> people;
+  const std::optional<KeypointLayout> layout = LayoutOf(message.layout);
+  if (!layout) return people;
+  for (const std::vector<BodyKeypoint>& keypoints : ToDetections(message)) {
     const std::optional<BodyKeypoints> body = MapToBody(*layout, keypoints);
     if (body) people.push_back(*body);
   }

@@ -1,12 +1,20 @@
 #ifndef AIRDOS_PROCESSES_NODE_KEYPOINT_MESSAGES_H_
 #define AIRDOS_PROCESSES_NODE_KEYPOINT_MESSAGES_H_
 
+#include <optional>
 #include <vector>
 
 #include "airdos/person_keypoints_t.hpp"
 #include "common/human/body_keypoints.h"
+#include "common/human/layouts.h"
 
 namespace airdos {
+
+/// What person_keypoints_t::layout says; nothing where it is unknown.
+std::optional<KeypointLayout> LayoutOf(int layout);
+
+/// The people of a message that has passed Validate(), with the keypoints as they were detected.
+std::vector<std::vector<BodyKeypoint>> ToDetections(const person_keypoints_t& message);
 
 /// The people of a message that has passed Validate(), with the joints of our body model. Nobody
 /// where the layout is unknown.

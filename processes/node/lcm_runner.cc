@@ -10,6 +10,7 @@
 #include "airdos/process_status_t.hpp"
 #include "common/util/version.h"
 #include "processes/node/channels.h"
+#include "processes/node/types_fingerprint.h"
 
 namespace airdos {
 namespace {
@@ -153,6 +154,7 @@ void LcmRunner::PublishStatus(std::int8_t state) {
   }
   status.process = options_.process;
   status.version = kVersion;
+  status.types_fingerprint = TypesFingerprint();
   status.pid = getpid();
   status.state = state;
   status.num_frames_done = node_->frames().num_done;

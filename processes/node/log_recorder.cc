@@ -13,6 +13,7 @@
 #include "processes/node/frame_joiner.h"
 #include "processes/node/log_source.h"
 #include "processes/node/process_usage.h"
+#include "processes/node/types_fingerprint.h"
 
 namespace airdos {
 namespace {
@@ -42,6 +43,7 @@ void PublishStatus(const LogRecorder& recorder, LcmTransport* transport, std::in
   process_status_t status = {};
   status.process = kProcessName;
   status.version = kVersion;
+  status.types_fingerprint = TypesFingerprint();
   status.pid = getpid();
   status.state = state;
   status.memory_mb = ResidentMemory_mb();

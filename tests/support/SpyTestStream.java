@@ -298,6 +298,7 @@ final class SpyTestStream {
     message.session = SESSION;
     message.process = process;
     message.version = "test";
+    message.types_fingerprint = "test";
     message.state = process.equals("frontend")
         ? process_status_t.STATE_READY
         : process_status_t.STATE_STALLED;

@@ -176,6 +176,7 @@ process_status_t Sample<process_status_t>() {
   auto message = WithHeader<process_status_t>();
   message.process = "airdos-optimizer";
   message.version = "1.2.3";
+  message.types_fingerprint = "0123456789abcdef";
   message.pid = 4711;
   message.state = process_status_t::STATE_READY;
   message.waiting_for = "CAMERA_LEFT";
