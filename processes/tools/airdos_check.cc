@@ -1,0 +1,49 @@
+// airdos-check: whether a folder or a log can be used, before it is.
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "common/util/error.h"
+#include "common/util/version.h"
+#include "processes/node/process_cli.h"
+#include "processes/tools/check_folder.h"
+#include "processes/tools/check_log.h"
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Says what is wrong with a recorded sequence or an LCM log before it is used: one line a "
+      "finding. Exit code 0: it can be used; 1: there are errors; 2: wrong arguments.",
+      "airdos-check");
+  std::string input;
+  std::string json_path;
+  airdos::CheckOptions options;
+  app.add_option("INPUT", input, "folder of a sequence, or an LCM log")->required();
+  app.add_option("--max-frames", options.max_frames, "pictures are looked at in so many frames")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  app.add_option("--odometry-frames", options.odometry_frames,
+                 "frames of visual odometry to compare the ground truth with; 0: none")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  app.add_option("--json", json_path, "file to write the findings to");
+  app.set_version_flag("--version", std::string(airdos::kVersion));
+
+  return airdos::RunProgram(argc, argv, &app, [&] {
+    airdos::FindingList findings;
+    if (std::filesystem::is_directory(input)) {
+      airdos::CheckFolder(input, options, &findings);
+    } else {
+      airdos::CheckLog(input, options, &findings);
+    }
+    findings.Print(input, &std::cout);
+    if (!json_path.empty()) {
+      std::ofstream file(json_path);
+      file << findings.ToJson(input).dump(2) << "\n";
+      file.close();
+      if (!file) throw airdos::InputError(json_path + ": cannot be written");
+    }
+    return findings.has_errors() ? 1 : 0;
+  });
+}

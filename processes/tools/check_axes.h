@@ -1,0 +1,15 @@
+#ifndef AIRDOS_PROCESSES_TOOLS_CHECK_AXES_H_
+#define AIRDOS_PROCESSES_TOOLS_CHECK_AXES_H_
+
+#include "processes/tools/check_input.h"
+
+namespace airdos {
+
+/// Compares the ground truth with a short visual odometry over the `num_frames` consecutive frames
+/// in which it moves most: whether the axes are those that the layout says, right- or left-handed,
+/// and whether the lengths agree.
+void CheckGroundTruth(const CheckedInput& input, std::size_t num_frames, FindingList* findings);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_TOOLS_CHECK_AXES_H_

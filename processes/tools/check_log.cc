@@ -1,0 +1,146 @@
+#include "processes/tools/check_log.h"
+
+#include <map>
+#include <utility>
+
+#include "processes/node/channels.h"
+#include "processes/node/codec.h"
+#include "processes/node/event_log.h"
+#include "processes/node/image_codec.h"
+#include "processes/node/keypoint_messages.h"
+#include "processes/node/log_source.h"
+#include "processes/node/validate.h"
+#include "processes/tools/check_jpeg.h"
+#include "processes/tools/check_log_survey.h"
+#include "processes/tools/check_people.h"
+
+namespace airdos {
+namespace {
+
+/// A sound message of this type, or nothing: LogSurvey has said why.
+template <class Message>
+std::optional<Message> DecodeSound(const LogEvent& event) {
+  Message message;
+  const bool decodes = Decode(event.payload.data(), event.payload.size(), &message);
+  if (!decodes || !Validate(message).empty()) return std::nullopt;
+  return message;
+}
+
+CheckedPeople ToCheckedPeople(const std::string& path, const LogEvent& event,
+                              const person_keypoints_t& message) {
+  CheckedPeople people;
+  people.where = LogSurvey::Where(path, event.channel, message.seq);
+  people.layout = LayoutOf(message.layout).value_or(KeypointLayout::kCoco18);
+  people.people = ToDetections(message);
+  return people;
+}
+
+class LogInput : public CheckedInput {
+ public:
+  LogInput(std::string path, const LogSurvey* survey)
+      : path_(std::move(path)), survey_(survey), camera_(*survey->camera()) {}
+
+  std::string name() const override { return path_; }
+  const StereoCamera& camera() const override { return camera_; }
+  std::string where_camera() const override { return path_ + ": CALIBRATION"; }
+  const std::vector<std::int64_t>& utimes() const override { return survey_->utimes(); }
+  std::string where_times() const override { return path_ + ": CAMERA_LEFT"; }
+  const std::vector<std::optional<Se3>>& ground_truth() const override {
+    return survey_->ground_truth();
+  }
+  TrajectoryAxes ground_truth_axes() const override { return survey_->ground_truth_axes(); }
+  std::string where_ground_truth() const override { return path_ + ": GROUND_TRUTH"; }
+
+  std::vector<CheckedPictures> Load(const std::vector<std::size_t>& frames,
+                                    FindingList* findings) const override {
+    std::map<LogSurvey::FrameKey, CheckedPictures> wanted;
+    for (const std::size_t frame : frames) wanted[survey_->frames()[frame]];
+    EventLogReader reader(path_);
+    while (const std::optional<LogEvent> event = reader.Next()) {
+      if (!IsInputChannel(event->channel)) continue;
+      const auto header = PeekHeader(event->payload.data(), event->payload.size());
+      const auto pictures = header ? wanted.find({header->session, header->seq}) : wanted.end();
+      if (pictures != wanted.end()) Take(*event, &pictures->second, findings);
+    }
+    std::vector<CheckedPictures> result;
+    for (const std::size_t frame : frames) result.push_back(wanted[survey_->frames()[frame]]);
+    return result;
+  }
+
+ private:
+  void Take(const LogEvent& event, CheckedPictures* pictures, FindingList* findings) const {
+    if (event.channel == channel::kCameraLeft || event.channel == channel::kCameraRight) {
+      const auto message = DecodeSound<image_t>(event);
+      if (!message) return;
+      const bool is_left = event.channel == channel::kCameraLeft;
+      const std::string where = LogSurvey::Where(path_, event.channel, message->seq);
+      (is_left ? pictures->where_left : pictures->where_right) = where;
+      const std::optional<cv::Mat> picture = DecodeGray(*message);
+      if (picture) {
+        (is_left ? pictures->left : pictures->right) = *picture;
+      } else {
+        findings->Fail("images.file", where, "cannot be decoded as an image of the size it says");
+      }
+    } else if (event.channel == channel::kPersonMask) {
+      const auto message = DecodeSound<person_mask_t>(event);
+      if (!message || message->encoding == person_mask_t::ENCODING_NONE) return;
+      pictures->where_mask = LogSurvey::Where(path_, event.channel, message->seq);
+      const std::optional<cv::Mat> picture = DecodeMask(*message);
+      if (picture) {
+        pictures->mask = *picture;
+      } else {
+        findings->Fail("masks.file", pictures->where_mask, "cannot be decoded as a mask");
+      }
+    } else if (event.channel == channel::kPersonKeypointsLeft) {
+      const auto message = DecodeSound<person_keypoints_t>(event);
+      if (message) pictures->people_left = ToCheckedPeople(path_, event, *message);
+    }
+  }
+
+  std::string path_;
+  const LogSurvey* survey_;
+  StereoCamera camera_;
+};
+
+/// Keypoints of all images, and how the images were compressed.
+void CheckContents(const std::string& path, const StereoCamera& camera, FindingList* findings) {
+  std::map<std::string, KeypointCheck> keypoints;
+  std::map<std::string, JpegCheck> images;
+  EventLogReader reader(path);
+  while (const std::optional<LogEvent> event = reader.Next()) {
+    const std::string& channel = event->channel;
+    if (channel == channel::kPersonKeypointsLeft || channel == channel::kPersonKeypointsRight) {
+      const auto message = DecodeSound<person_keypoints_t>(*event);
+      if (!message) continue;
+      keypoints.try_emplace(channel, camera)
+          .first->second.Add(ToCheckedPeople(path, *event, *message), findings);
+    } else if (channel == channel::kCameraLeft || channel == channel::kCameraRight) {
+      const auto message = DecodeSound<image_t>(*event);
+      if (message && message->encoding == image_t::ENCODING_JPEG)
+        images[channel].Add(message->data);
+    }
+  }
+  for (const auto& [channel, check] : keypoints) check.Report(path + ": " + channel, findings);
+  for (const auto& [channel, check] : images) check.Report(path + ": " + channel, findings);
+}
+
+}  // namespace
+
+void CheckLog(const std::string& path, const CheckOptions& options, FindingList* findings) {
+  const LogSurvey survey(path, findings);
+  if (survey.frames().empty()) {
+    if (survey.has_features()) {
+      findings->Warn("log.images", path,
+                     "no images, only features (airdos-replay --from-features)");
+    } else {
+      findings->Fail("log.images", path, "no image on CAMERA_LEFT");
+    }
+    return;
+  }
+  survey.Report();
+  if (!survey.camera()) return;
+  CheckContents(path, *survey.camera(), findings);
+  CheckFrames(LogInput(path, &survey), options, findings);
+}
+
+}  // namespace airdos

@@ -1,0 +1,18 @@
+#ifndef AIRDOS_PROCESSES_TOOLS_CHECK_LOG_H_
+#define AIRDOS_PROCESSES_TOOLS_CHECK_LOG_H_
+
+#include <string>
+
+#include "processes/tools/check_input.h"
+
+namespace airdos {
+
+/// Checks the input channels of an event log: that every message decodes and makes sense, is small
+/// enough to travel, comes in order and without gaps, that each image has its partners and a
+/// calibration before it, and then what it shows as CheckFolder() does. Throws InputError where the
+/// file is no log.
+void CheckLog(const std::string& path, const CheckOptions& options, FindingList* findings);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_TOOLS_CHECK_LOG_H_

@@ -1,0 +1,201 @@
+#include "processes/tools/check_people.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace airdos {
+namespace {
+
+constexpr double kMinConfidence = 0.2;  // of joints that say something of a shape
+constexpr double kMargin = 0.1;         // of the image's size: detectors complete what is cut off
+constexpr int kMinPeople = 5;           // fewer shapes say nothing
+constexpr int kMinMaskPoints = 50;      // fewer keypoints say nothing of a mask
+
+bool IsSeen(const BodyKeypoint& joint) { return joint.confidence > kMinConfidence; }
+
+/// Length of the visible segments in the image over that of a grown person (px per m).
+double LengthPerMetre(const BodyKeypoints& person) {
+  double length_px = 0;
+  double length_m = 0;
+  for (const Segment& segment : kSegments) {
+    const BodyKeypoint& a = person[static_cast<std::size_t>(segment.joint_a)];
+    const BodyKeypoint& b = person[static_cast<std::size_t>(segment.joint_b)];
+    if (!IsSeen(a) || !IsSeen(b)) continue;
+    length_px += (a.uv_px() - b.uv_px()).norm();
+    length_m += segment.typical_length_m;
+  }
+  return length_m > 1 ? length_px / length_m : 0;
+}
+
+/// The neck lies nearer to the middle of the shoulders than half their distance, or than a fifth of
+/// the trunk where the person is seen from the side.
+bool IsNeckBetweenShoulders(const BodyKeypoints& person) {
+  const Eigen::Vector2d neck = person[kNeck].uv_px();
+  const Eigen::Vector2d right = person[kRightShoulder].uv_px();
+  const Eigen::Vector2d left = person[kLeftShoulder].uv_px();
+  double allowed_px = 0.5 * (right - left).norm();
+  for (const Joint hip : {kRightHip, kLeftHip}) {
+    if (!IsSeen(person[hip])) continue;
+    allowed_px = std::max(allowed_px, 0.2 * (person[hip].uv_px() - neck).norm());
+  }
+  return (neck - 0.5 * (right + left)).norm() <= std::max(allowed_px, 1.5);
+}
+
+}  // namespace
+
+void KeypointCheck::Add(const CheckedPeople& people, FindingList* findings) {
+  ++num_images_;
+  num_people_ += static_cast<int>(people.people.size());
+  AddPoints(people, findings);
+  for (const std::vector<BodyKeypoint>& person : people.people) AddShape(people.layout, person);
+}
+
+void KeypointCheck::AddPoints(const CheckedPeople& people, FindingList* findings) {
+  double worst = 0;
+  int num_outside = 0;
+  for (const std::vector<BodyKeypoint>& person : people.people) {
+    for (const BodyKeypoint& point : person) {
+      if (std::abs(point.confidence - 0.5) > std::abs(worst - 0.5)) worst = point.confidence;
+      if (!(point.confidence > 0)) continue;
+      ++num_points_;
+      const Eigen::Vector2d distance(std::abs(point.u_px / camera_.width - 0.5),
+                                     std::abs(point.v_px / camera_.height - 0.5));
+      num_outside += distance.maxCoeff() > 0.5 + kMargin ? 1 : 0;
+      num_below_two_ += std::abs(point.u_px) <= 2 && std::abs(point.v_px) <= 2 ? 1 : 0;
+    }
+  }
+  if (num_outside > 0 && num_outside_ == 0) first_outside_ = people.where;
+  num_outside_ += num_outside;
+  // Some detectors' sums go a little above 1; the readers bound them.
+  if (worst < 0 || worst > 2) {
+    findings->Fail("keypoints.confidence", people.where,
+                   "a confidence of " + Brief(worst) + " is not within 0..1" +
+                       (worst > 2 && worst <= 100 ? " (percent?)" : ""));
+  }
+}
+
+void KeypointCheck::AddShape(KeypointLayout layout, const std::vector<BodyKeypoint>& person) {
+  const std::optional<BodyKeypoints> body = MapToBody(layout, person);
+  if (!body) return;
+  const auto is_seen = [&](Joint joint) { return IsSeen((*body)[joint]); };
+  if (is_seen(kNeck) && is_seen(kRightShoulder) && is_seen(kLeftShoulder)) {
+    ++num_necks_;
+    num_good_necks_ += IsNeckBetweenShoulders(*body) ? 1 : 0;
+  }
+  if (is_seen(kNose) && is_seen(kRightHip) && is_seen(kLeftHip)) {
+    ++num_heads_;
+    const double hip_px = 0.5 * ((*body)[kRightHip].v_px + (*body)[kLeftHip].v_px);
+    num_good_heads_ += (*body)[kNose].v_px < hip_px ? 1 : 0;
+  }
+  if (layout != KeypointLayout::kCoco18) return;
+  const std::optional<BodyKeypoints> as_coco17 =
+      MapToBody(KeypointLayout::kCoco17, {person.begin(), person.begin() + 17});
+  const double length = LengthPerMetre(*body);
+  const double length17 = LengthPerMetre(*as_coco17);
+  if (length > 0 && length17 > 0) coco17_ratios_.push_back(length17 / length);
+}
+
+void KeypointCheck::Report(const std::string& where, FindingList* findings) const {
+  if (num_people_ == 0) {
+    findings->Note("keypoints.people", where,
+                   "nobody in " + std::to_string(num_images_) + " images");
+    return;
+  }
+  findings->Note(
+      "keypoints.people", where,
+      std::to_string(num_people_) + " people in " + std::to_string(num_images_) + " images");
+  if (num_points_ == 0) {
+    findings->Warn("keypoints.confidence", where, "every keypoint has confidence 0 (not seen)");
+    return;
+  }
+  const double num_points = num_points_;
+  if (num_below_two_ > 0.5 * num_points) {
+    findings->Fail("keypoints.normalised", where,
+                   "coordinates are in 0..1 of the image's size; they are wanted in px");
+  } else if (num_outside_ > 0.2 * num_points) {
+    findings->Fail("keypoints.scale", where,
+                   Percent(num_outside_ / num_points) +
+                       " of the keypoints lie outside the image: they are of another size of it");
+  } else {
+    ReportLayout(where, findings);
+  }
+}
+
+void KeypointCheck::ReportLayout(const std::string& where, FindingList* findings) const {
+  constexpr double kUsualOutside = 0.01;  // detectors complete people who are cut off
+  if (num_outside_ > 0) {
+    findings->Add(num_outside_ > kUsualOutside * num_points_ ? Severity::kWarning : Severity::kNote,
+                  "keypoints.outside", first_outside_,
+                  "here first, " + std::to_string(num_outside_) + " of " +
+                      std::to_string(num_points_) + " keypoints lie far outside the image of " +
+                      std::to_string(camera_.width) + " x " + std::to_string(camera_.height) +
+                      " px");
+  }
+  const double necks = num_necks_ > 0 ? 1.0 * num_good_necks_ / num_necks_ : 1;
+  const double heads = num_heads_ > 0 ? 1.0 * num_good_heads_ / num_heads_ : 1;
+  const std::string shape = "the neck lies between the shoulders in " + Percent(necks) + " of " +
+                            std::to_string(num_necks_) + " people, the nose above the hips in " +
+                            Percent(heads) + " of " + std::to_string(num_heads_);
+  constexpr double kClearlyShorter = 0.75;
+  if (coco17_ratios_.size() >= kMinPeople && Quantile(coco17_ratios_, 0.5) < kClearlyShorter) {
+    findings->Fail("keypoints.layout", where,
+                   "the order of the joints is not COCO-18, it looks like COCO-17: " + shape);
+  } else if (num_necks_ >= kMinPeople && necks < 0.5) {
+    findings->Fail("keypoints.layout", where,
+                   "the order of the joints is not the layout's: " + shape);
+  } else if (num_heads_ >= kMinPeople && heads < 0.7) {
+    findings->Warn("keypoints.layout", where, "is the image upside down? " + shape);
+  } else {
+    findings->Note("keypoints.layout", where, shape);
+  }
+}
+
+void MaskCheck::Add(const CheckedPictures& pictures, FindingList* findings) {
+  const cv::Mat& mask = pictures.mask;
+  if (mask.empty()) return;
+  if (mask.cols != camera_.width || mask.rows != camera_.height) {
+    findings->Fail("masks.size", pictures.where_mask,
+                   "has " + std::to_string(mask.cols) + " x " + std::to_string(mask.rows) +
+                       " px, the images " + std::to_string(camera_.width) + " x " +
+                       std::to_string(camera_.height));
+    return;
+  }
+  const double coverage = cv::countNonZero(mask) / static_cast<double>(mask.total());
+  coverages_.push_back(coverage);
+  for (const std::vector<BodyKeypoint>& person : pictures.people_left.people) {
+    for (const BodyKeypoint& point : person) {
+      if (!IsSeen(point) || !camera_.IsInImage(point.uv_px())) continue;
+      ++num_points_;
+      chance_ += coverage;
+      num_inside_ +=
+          mask.at<unsigned char>(static_cast<int>(point.v_px), static_cast<int>(point.u_px)) != 0
+              ? 1
+              : 0;
+    }
+  }
+}
+
+void MaskCheck::Report(const std::string& where, FindingList* findings) const {
+  if (coverages_.empty()) return;
+  const double coverage = Quantile(coverages_, 0.5);
+  const bool has_points = num_points_ >= kMinMaskPoints;
+  const double inside = has_points ? 1.0 * num_inside_ / num_points_ : 0;
+  std::string text = "masks cover " + Percent(coverage) + " of the image (median)";
+  if (has_points) text += ", " + Percent(inside) + " of the keypoints lie in them";
+  if (has_points && num_inside_ < 0.8 * chance_ && inside < 0.5) {
+    findings->Fail("masks.polarity", where,
+                   "fewer keypoints than by chance lie on people: inverted (0 is background), or " +
+                       std::string("of other images: ") + text);
+  } else if (!has_points && coverage > 0.6) {
+    findings->Warn("masks.polarity", where, "people are the minority; inverted? " + text);
+  } else if (has_points && coverage == 0) {
+    findings->Warn("masks.empty", where, "no mask marks anybody, though there are keypoints");
+  } else if (has_points && inside < 0.4) {
+    findings->Warn("masks.keypoints", where, "masks and keypoints do not fit together: " + text);
+  } else {
+    findings->Note("masks.polarity", where, text);
+  }
+}
+
+}  // namespace airdos

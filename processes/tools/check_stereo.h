@@ -1,0 +1,44 @@
+#ifndef AIRDOS_PROCESSES_TOOLS_CHECK_STEREO_H_
+#define AIRDOS_PROCESSES_TOOLS_CHECK_STEREO_H_
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "common/geometry/stereo_camera.h"
+#include "processes/tools/check_findings.h"
+
+namespace airdos {
+
+/// Whether numbers can be those of a stereo pair in px and m: focal length 0.3 to 4 times the
+/// width, principal point in the middle half, baseline 2 cm to 2 m.
+void CheckCamera(const StereoCamera& camera, const std::string& where, FindingList* findings);
+
+/// Whether pairs of images are what they are said to be: of one size, left and right (disparities
+/// are positive), different, rectified (matches lie on one row), and at plausible depths. Corners
+/// are matched by descriptor without regard to rows or signs, then aligned to a fraction of a
+/// pixel; mismatches are few enough for medians.
+class StereoCheck {
+ public:
+  explicit StereoCheck(const StereoCamera& camera) : camera_(camera) {}
+
+  /// Pictures are CV_8UC1. A size that differs from the camera's is a finding at once.
+  void Add(const std::string& where_left, const cv::Mat& left, const std::string& where_right,
+           const cv::Mat& right, FindingList* findings);
+  void Report(const std::string& where, FindingList* findings) const;
+
+ private:
+  void ReportOrder(const std::string& where, FindingList* findings) const;
+  void ReportRows(const std::string& where, FindingList* findings) const;
+  void ReportDepth(const std::string& where, FindingList* findings) const;
+
+  StereoCamera camera_;
+  int num_pairs_ = 0;
+  int num_identical_ = 0;
+  std::vector<double> disparities_px_;  // u_left - u_right
+  std::vector<double> row_errors_px_;   // v_right - v_left
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_TOOLS_CHECK_STEREO_H_

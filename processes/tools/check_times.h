@@ -1,0 +1,20 @@
+#ifndef AIRDOS_PROCESSES_TOOLS_CHECK_TIMES_H_
+#define AIRDOS_PROCESSES_TOOLS_CHECK_TIMES_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "processes/tools/check_findings.h"
+
+namespace airdos {
+
+/// Whether capture times (us) can be those of a camera: increasing, at 1 to 200 images a second,
+/// without gaps (1.5 times the median interval). Times that were written in ms, us or ns where s
+/// are wanted are told by their interval.
+void CheckTimes(const std::vector<std::int64_t>& utimes, const std::string& where,
+                FindingList* findings);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_TOOLS_CHECK_TIMES_H_
