@@ -8,6 +8,7 @@
 # Three things: the interface is up and has its multicast flag, 224.0.0.0/4 has a route through it, and sockets may ask for a
 # receive buffer of 4 MiB (net.core.rmem_max), which lossless images need. Exit code 0: all is well (the buffer only warns);
 # 1: something is missing and was not or could not be mended; 2: wrong arguments. Nothing outlives a reboot.
+# airdos-doctor looks at more: other runs on the port, a round trip, disk, lcm-spy.
 set -u
 
 readonly WANTED_RMEM_BYTES=4194304

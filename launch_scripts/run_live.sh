@@ -130,15 +130,23 @@ finish() {
   exit "$bad"
 }
 
+# What is wrong with the machine, as far as airdos-doctor sees it from this network; silent if nothing is.
+consult_doctor() {
+  [[ -x $AIRDOS_BIN/airdos-doctor ]] || return 0
+  "$AIRDOS_BIN/airdos-doctor" --lcm-url "$url" --run-dir "$run_dir" --round-trip never 2>&1 |
+    sed -n '/^OK\|^WARN spy/!s/^/airdos-doctor: /p' >&2 || true
+}
+
 wait_until_ready() {
   local name=$1 deadline=$((SECONDS + READY_DEADLINE_S))
   until grep -q ' READY ' "$run_dir/$name.log"; do
     if ! is_running "$name"; then
       tail -n 5 "$run_dir/$name.log" >&2
       say "$name ended before it was ready" >&2
+      consult_doctor
       finish
     fi
-    ((SECONDS < deadline)) || { say "$name is not READY after $READY_DEADLINE_S s" >&2 && finish; }
+    ((SECONDS < deadline)) || { say "$name is not READY after $READY_DEADLINE_S s" >&2 && consult_doctor && finish; }
     [[ $stopping == no ]] || finish
     pause 0.05
   done
@@ -207,6 +215,10 @@ fi
 while [[ $stopping == no ]]; do
   if [[ -n ${pids[player]:-} ]] && ! is_running player; then
     collect player
+    if ((exit_codes[player] != 0)); then
+      tail -n 3 "$run_dir/player.log" >&2
+      say "what is wrong with the input: $AIRDOS_BIN/airdos-check '${data:-$log}'" >&2
+    fi
     say "everything has been sent; waiting for the processes"
     wait_until_idle
     break

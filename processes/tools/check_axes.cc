@@ -1,6 +1,7 @@
 #include "processes/tools/check_axes.h"
 
 #include <algorithm>
+#include <opencv2/imgproc.hpp>
 
 #include "common/evaluation/ground_truth_axes.h"
 #include "common/features/visual_odometry.h"
@@ -52,6 +53,7 @@ TrajectoryPose ToTrajectoryPose(const Se3& pose, std::int64_t utime) {
 MatchedTrajectories RunOdometry(const CheckedInput& input, const std::vector<std::size_t>& frames) {
   FindingList ignored;  // the check of the pictures has said it
   VisualOdometry odometry{VisualOdometryOptions()};
+  const cv::Mat mask_margin = cv::Mat::ones(17, 17, CV_8UC1);  // px, as the front end has it
   MatchedTrajectories matched;
   const cv::Size size(input.camera().width, input.camera().height);
   std::size_t i = 0;
@@ -63,7 +65,7 @@ MatchedTrajectories RunOdometry(const CheckedInput& input, const std::vector<std
     pair.time_s = 1e-6 * static_cast<double>(input.utimes()[frame]);
     pair.left = pictures.left;
     pair.right = pictures.right;
-    if (pictures.mask.size() == size) pair.mask = pictures.mask;
+    if (pictures.mask.size() == size) cv::dilate(pictures.mask, pair.mask, mask_margin);
     const OdometryFrame result = odometry.Process(input.camera(), pair);
     if (result.state == TrackingState::kCoasting) continue;
     matched.estimate.push_back(ToTrajectoryPose(result.T_W_C, input.utimes()[frame]));
@@ -104,10 +106,23 @@ void CompareAxes(const CheckedInput& input, const MatchedTrajectories& matched,
   }
 }
 
+/// Length of the path in strides of ten frames, m: the noise of single steps would make it longer.
+double Travel(const std::vector<TrajectoryPose>& poses) {
+  constexpr std::size_t kStride = 10;
+  const std::size_t stride = std::min(kStride, poses.size() - 1);
+  double travel_m = 0;
+  for (std::size_t i = stride; i < poses.size(); ++i) {
+    travel_m += (poses[i].position_m - poses[i - stride].position_m).norm();
+  }
+  const auto num_strides = static_cast<double>(poses.size() - stride);
+  return travel_m / num_strides * static_cast<double>(poses.size() - 1) /
+         static_cast<double>(stride);
+}
+
 void CompareLengths(const CheckedInput& input, const MatchedTrajectories& matched,
                     FindingList* findings) {
-  const double odometry_m = PathLengths(matched.estimate).back();
-  const double truth_m = PathLengths(matched.ground_truth).back();
+  const double odometry_m = Travel(matched.estimate);
+  const double truth_m = Travel(matched.ground_truth);
   if (odometry_m < kMinPath_m || truth_m <= 0) return;
   const double ratio = truth_m / odometry_m;
   const std::string paths = "a path of " + Brief(truth_m) + " m, of which visual odometry makes " +

@@ -10,8 +10,8 @@
 namespace airdos {
 
 /// Whether keypoints are those of people in the order that their layout says: in the image, with
-/// confidences in 0..1, the neck between the shoulders, the nose above the hips, and the segments
-/// shorter than if the rows were COCO-17 (in which there is no neck).
+/// confidences in 0..1, the neck between the shoulders, the nose above the hips, and the lengths
+/// of segments nearer to a person's proportions than if the rows were COCO-17 (which has no neck).
 class KeypointCheck {
  public:
   explicit KeypointCheck(const StereoCamera& camera) : camera_(camera) {}
@@ -35,7 +35,7 @@ class KeypointCheck {
   int num_good_necks_ = 0;
   int num_heads_ = 0;  // people whose nose and hips are seen
   int num_good_heads_ = 0;
-  std::vector<double> coco17_ratios_;  // length as COCO-17 / as given, per person
+  std::vector<double> coco17_ratios_;  // disproportion as COCO-17 / as given, per person
 };
 
 /// Whether masks mark people: not most of the image, and where the keypoints are. Masks whose
