@@ -110,6 +110,14 @@ TEST_F(CheckFolderTest, MissingAndUnreadableFilesAreNamed) {
   ExpectOnly(Severity::kWarning, "ground_truth.count", "gt_pose.txt");
 }
 
+TEST_F(CheckFolderTest, WhatTheReaderHadToAssume) {
+  sequence_.times_s.push_back("1.4");  // one more than images
+  sequence_.Write(folder_);
+  ExpectOnly(Severity::kWarning, "folder.assumed", "times.txt");
+  fs::remove(folder_ / "times.txt");
+  ExpectOnly(Severity::kWarning, "folder.assumed", "times.txt");
+}
+
 TEST_F(CheckFolderTest, ImagesOfAnotherSize) {
   cv::resize(sequence_.right[0], sequence_.right[0], {160, 96});
   sequence_.Write(folder_);
@@ -124,6 +132,11 @@ TEST_F(CheckFolderTest, LeftAndRightExchangedOrTheSame) {
   std::swap(sequence_.left, sequence_.right);
   sequence_.Write(folder_);
   ExpectOnly(Severity::kError, "images.swapped", folder_.string());
+  for (std::size_t i = 0; i < sequence_.left.size(); i += 2) {
+    std::swap(sequence_.left[i], sequence_.right[i]);
+  }
+  sequence_.Write(folder_);
+  ExpectOnly(Severity::kWarning, "images.order", folder_.string());
   sequence_.left = sequence_.right;
   sequence_.Write(folder_);
   ExpectOnly(Severity::kError, "images.identical", folder_.string());
@@ -182,6 +195,11 @@ TEST_F(CheckFolderTest, UnitsOrderAndGapsOfTimes) {
     sequence_.Write(folder_);
     ExpectOnly(Severity::kError, "times.unit", "times.txt");
   }
+  for (std::size_t i = 0; i < sequence_.times_s.size(); ++i) {
+    sequence_.times_s[i] = std::to_string(3 * i);
+  }
+  sequence_.Write(folder_);
+  ExpectOnly(Severity::kWarning, "times.rate", "times.txt");
   sequence_ = Sound();
   sequence_.times_s.back() = "1.7";
   sequence_.T_W_C.pop_back();
@@ -215,6 +233,11 @@ TEST_F(CheckFolderTest, MasksThatDoNotFitTheKeypoints) {
   for (cv::Mat& mask : sequence_.masks) mask.setTo(0);
   sequence_.Write(folder_);
   ExpectOnly(Severity::kWarning, "masks.empty", folder_.string());
+  for (cv::Mat& mask : sequence_.masks) cv::circle(mask, {160, 20}, 20, 255, cv::FILLED);
+  sequence_.Write(folder_);
+  ExpectOnly(Severity::kWarning, "masks.keypoints", folder_.string());
+  std::ofstream(folder_ / "rcnnseg_image_0" / "000000.png") << "no mask at all";
+  ExpectOnly(Severity::kError, "masks.file", "rcnnseg_image_0/000000.png");
 }
 
 /// Changes every keypoint of both images.
@@ -255,6 +278,16 @@ TEST_F(CheckFolderTest, KeypointsInAnotherOrder) {
   }
   sequence_.Write(folder_);
   ExpectOnly(Severity::kError, "keypoints.layout", "alphapose_1");
+}
+
+TEST_F(CheckFolderTest, PeopleUpsideDownOrUnseen) {
+  ForEachPoint(&sequence_, [](auto* point) { (*point)[1] = 191 - (*point)[1]; });
+  sequence_.Write(folder_);
+  ExpectOnly(Severity::kWarning, "keypoints.layout", "alphapose_0");
+  sequence_ = Sound();
+  ForEachPoint(&sequence_, [](auto* point) { (*point)[2] = 0; });
+  sequence_.Write(folder_);
+  ExpectOnly(Severity::kWarning, "keypoints.confidence", "alphapose_0");
 }
 
 TEST_F(CheckFolderTest, KeypointsInOtherUnits) {

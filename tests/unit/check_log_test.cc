@@ -181,6 +181,16 @@ TEST_F(CheckLogTest, LargeMessages) {
   Expect(Severity::kWarning, "log.size", "CAMERA_LEFT");
 }
 
+TEST_F(CheckLogTest, TwoSessions) {
+  std::vector<Envelope> again = SoundMessages();
+  for (Envelope& message : again) {
+    if (message.channel != channel::kCameraLeft) continue;
+    Change<image_t>(&message, [](image_t* m) { m->session += 1; });
+    messages_.push_back(message);
+  }
+  Expect(Severity::kWarning, "log.sessions", path_);
+}
+
 TEST_F(CheckLogTest, Damage) {
   Write();
   std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
