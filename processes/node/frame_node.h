@@ -35,6 +35,11 @@ class FrameNode : public Node {
 
   using Node::Node;
 
+  bool MakesUpFrames(const std::string& channel) const override {
+    const auto& names = channels_of_inputs_;
+    return std::find(names.begin(), names.end(), channel) != names.end();
+  }
+
   bool Step() override {
     const std::optional<FrameJoiner::Frame> frame = Joiner().Oldest();
     if (!frame) return false;

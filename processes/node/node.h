@@ -49,6 +49,9 @@ class Node {
 
   const std::string& name() const { return name_; }
   std::vector<std::string> input_channels() const;
+  /// False for input channels that bring what holds for more than a frame, or what others made of
+  /// earlier frames: those can close a circle of nodes.
+  virtual bool MakesUpFrames(const std::string& /*channel*/) const { return true; }
 
   /// Takes in one message; never throws, whatever the bytes are. Bytes that do not decode or make
   /// no sense are counted.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <opencv2/core/utility.hpp>
 #include <string>
+#include <thread>
 
 #include "processes/node/process_cli.h"
 #include "processes/tools/replay.h"
@@ -18,6 +19,7 @@ int main(int argc, char** argv) {
   std::string timing_path;
   std::int64_t first = std::numeric_limits<std::int64_t>::min();
   std::int64_t last = std::numeric_limits<std::int64_t>::max();
+  std::string threads = "auto";
   bool no_progress = false;
   bool digest = false;
   bool digest_only = false;
@@ -39,6 +41,10 @@ int main(int argc, char** argv) {
   app.add_flag("--from-features", setup.from_features,
                "run only the optimizer and the map recorder, on the features and people that the "
                "log holds (airdos-simulate)");
+  app.add_option("--threads", threads,
+                 "1: all in one; auto: one for each process, if there are cores")
+      ->check(CLI::IsMember({"1", "auto"}))
+      ->capture_default_str();
   app.add_option("--timing", timing_path, "JSON file for ms per frame of each process");
   app.add_flag("--no-progress", no_progress, "do not say how far it is");
   app.add_flag("--digest", digest, "print the digests of the output channels only");
@@ -54,6 +60,7 @@ int main(int argc, char** argv) {
         setup.from_features ? airdos::LogInputs::kFeatures : airdos::LogInputs::kImages;
     const auto source = airdos::OpenFrameSource(input, first, last, inputs);
     const auto nodes = airdos::MakeReplayNodes(setup);
+    options.is_parallel = threads == "auto" && std::thread::hardware_concurrency() > 1;
     airdos::ProgressBar bar;
     if (!no_progress) options.on_progress = [&bar](double fraction) { bar.Show(fraction); };
     const airdos::ReplayResult result = airdos::Replay(source.get(), nodes, options);

@@ -18,6 +18,7 @@
 #include "processes/node/channels.h"
 #include "processes/node/codec.h"
 #include "processes/node/fifo_bus.h"
+#include "processes/node/parallel_bus.h"
 
 namespace airdos {
 namespace {
@@ -28,35 +29,45 @@ double NowMs(clockid_t clock) {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-// Adds up what a node's calls take until it is done with a frame.
-class Stopwatch : public FifoBus::WorkObserver {
+// Adds up what a node's calls take until it is done with a frame. Each node has its own entry, so
+// that nodes on different threads do not meet.
+class Stopwatch : public Bus::WorkObserver {
  public:
-  void BeforeWork(const Node&) override {
-    start_wall_ms_ = NowMs(CLOCK_MONOTONIC);
-    start_cpu_ms_ = NowMs(CLOCK_PROCESS_CPUTIME_ID);
+  explicit Stopwatch(const std::vector<ReplayNode>& nodes) {
+    for (const ReplayNode& entry : nodes) laps_[entry.node->name()];
+  }
+  void BeforeWork(const Node& node) override {
+    Lap& lap = laps_.at(node.name());
+    lap.start_wall_ms = NowMs(CLOCK_MONOTONIC);
+    lap.start_cpu_ms = NowMs(CLOCK_THREAD_CPUTIME_ID);
   }
   void AfterWork(const Node& node) override {
-    Lap& lap = laps_[node.name()];
-    lap.cpu_ms += NowMs(CLOCK_PROCESS_CPUTIME_ID) - start_cpu_ms_;
-    lap.wall_ms += NowMs(CLOCK_MONOTONIC) - start_wall_ms_;
+    Lap& lap = laps_.at(node.name());
+    lap.cpu_ms += NowMs(CLOCK_THREAD_CPUTIME_ID) - lap.start_cpu_ms;
+    lap.wall_ms += NowMs(CLOCK_MONOTONIC) - lap.start_wall_ms;
     if (node.frames().num_done == lap.num_done) return;
-    NodeTiming& timing = timing_[node.name()];
-    timing.wall_ms.push_back(lap.wall_ms);
-    timing.cpu_ms.push_back(lap.cpu_ms);
-    lap = {0, 0, node.frames().num_done};
+    lap.timing.wall_ms.push_back(std::exchange(lap.wall_ms, 0));
+    lap.timing.cpu_ms.push_back(std::exchange(lap.cpu_ms, 0));
+    lap.num_done = node.frames().num_done;
   }
-  std::map<std::string, NodeTiming> TakeTiming() { return std::move(timing_); }
+  std::map<std::string, NodeTiming> TakeTiming() {
+    std::map<std::string, NodeTiming> timing;
+    for (auto& [name, lap] : laps_) {
+      if (lap.num_done > 0) timing[name] = std::move(lap.timing);
+    }
+    return timing;
+  }
 
  private:
   struct Lap {
+    double start_wall_ms = 0;
+    double start_cpu_ms = 0;
     double wall_ms = 0;
     double cpu_ms = 0;
     std::int64_t num_done = 0;
+    NodeTiming timing;
   };
-  double start_wall_ms_ = 0;
-  double start_cpu_ms_ = 0;
   std::map<std::string, Lap> laps_;
-  std::map<std::string, NodeTiming> timing_;
 };
 
 using FrameKey = std::pair<std::int64_t, std::int64_t>;  // session, seq
@@ -151,26 +162,39 @@ Statistics StatisticsOf(std::vector<double> values) {
   return {sum / static_cast<double>(values.size()), quantile(0.50), quantile(0.99)};
 }
 
+// The next frame; where the source fails, what came before has its effect first.
+std::vector<Envelope> NextFrame(FrameSource* source, Bus* bus) {
+  try {
+    return source->NextFrame();
+  } catch (...) {
+    bus->Settle();
+    throw;
+  }
+}
+
 }  // namespace
 
 ReplayResult Replay(FrameSource* source, const std::vector<ReplayNode>& nodes,
                     const ReplayOptions& options) {
   Archive archive(options);
-  Stopwatch stopwatch;
-  FifoBus bus;
-  for (const ReplayNode& entry : nodes) bus.AddNode(entry.node.get(), entry.publishes);
-  bus.AddObserver([&archive](const Envelope& message) { archive.Take(message); });
-  bus.SetWorkObserver(&stopwatch);
+  Stopwatch stopwatch(nodes);
+  std::unique_ptr<Bus> bus = std::make_unique<FifoBus>();
+  if (options.is_parallel) bus = std::make_unique<ParallelBus>();
+  for (const ReplayNode& entry : nodes) bus->AddNode(entry.node.get(), entry.publishes);
+  bus->AddObserver([&archive](const Envelope& message) { archive.Take(message); });
+  bus->SetWorkObserver(&stopwatch);
 
   ReplayResult result;
+  const double start_ms = NowMs(CLOCK_MONOTONIC);
   for (;;) {
-    std::vector<Envelope> frame = source->NextFrame();
+    std::vector<Envelope> frame = NextFrame(source, bus.get());
     for (const std::string& note : source->TakeNotes()) result.remarks.push_back(note);
     if (frame.empty()) break;
-    for (Envelope& message : frame) bus.Publish(std::move(message));
+    bus->PublishFrame(std::move(frame));
     if (options.on_progress) options.on_progress(source->fraction_done());
   }
-  bus.Finish();
+  bus->Finish();
+  result.wall_s = 1e-3 * (NowMs(CLOCK_MONOTONIC) - start_ms);
   for (const ReplayNode& entry : nodes) entry.node->Finish();
 
   archive.Fill(&result);
@@ -226,7 +250,9 @@ void WriteTiming(const ReplayResult& result, const std::string& path) {
     return nlohmann::json{
         {"mean", statistics.mean}, {"p50", statistics.p50}, {"p99", statistics.p99}};
   };
-  nlohmann::json json{{"num_frames", result.num_frames}, {"num_posed", result.num_posed}};
+  nlohmann::json json{{"num_frames", result.num_frames},
+                      {"num_posed", result.num_posed},
+                      {"wall_s", result.wall_s}};
   for (const auto& [name, timing] : result.timing) {
     json["processes"][name] = {{"num_frames", timing.wall_ms.size()},
                                {"wall_ms", to_json(timing.wall_ms)},

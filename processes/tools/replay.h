@@ -22,10 +22,12 @@ struct ReplayNode {
 struct ReplayOptions {
   std::string out_path;        ///< log of what the nodes published; empty: none is written
   bool writes_inputs = false;  ///< whether the inputs are in it as well
+  bool is_parallel = false;    ///< a thread for each node; results are the same
   std::function<void(double)> on_progress;  ///< called after each frame with 0..1; may be empty
 };
 
-/// Time that one node took for each of its frames, whatever part of it was spent on receiving.
+/// Time that one node took for each of its frames, whatever part of it was spent on receiving; CPU
+/// time is that of its thread.
 struct NodeTiming {
   std::vector<double> wall_ms;
   std::vector<double> cpu_ms;
@@ -35,6 +37,7 @@ struct ReplayResult {
   std::int64_t num_frames = 0;  ///< images that the source had: different (session, seq)
   std::int64_t num_posed = 0;   ///< of these, with a STATE_ESTIMATE that holds a pose
   std::int64_t num_events = 0;  ///< in the output log
+  double wall_s = 0;            ///< from the first frame to the last, Finish() included
   std::string log_sha256;       ///< of the output log, as sha256sum prints it; empty if none
   std::map<std::string, ChannelDigests::Entry> digests;  ///< of each output channel
   std::map<std::string, NodeTiming> timing;              ///< by name of the node
@@ -43,7 +46,8 @@ struct ReplayResult {
 
 /// Runs all nodes in this process on the frames of `source`, as fast as the machine allows. Event
 /// numbers and timestamps (the utime of the frame that a message belongs to) depend on the input
-/// alone, so two runs write the same bytes. Throws WriteError, and InputError if the source does.
+/// alone, so two runs write the same bytes, in one thread or several. Throws WriteError, and
+/// InputError if the source does; the output log then holds what was published until then.
 ReplayResult Replay(FrameSource* source, const std::vector<ReplayNode>& nodes,
                     const ReplayOptions& options);
 

@@ -1,6 +1,7 @@
 #ifndef AIRDOS_TESTS_NODE_FAKE_NODES_H_
 #define AIRDOS_TESTS_NODE_FAKE_NODES_H_
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -47,7 +48,7 @@ class TextNode : public FrameNode<TextInputs> {
     if (inputs.size() > 1) Join(inputs.at(1), &TextInputs::second);
     if (feedback_.empty()) return;
     Subscribe<frame_done_t>(feedback_, [this](frame_done_t&& message) {
-      feedback_texts_[message.seq] = message.process;
+      feedback_texts_[{message.session, message.seq}] = message.process;
       return std::string();
     });
   }
@@ -55,16 +56,17 @@ class TextNode : public FrameNode<TextInputs> {
  protected:
   std::vector<std::string> MissingFeedback(const Header& header) const override {
     const std::int64_t seq = header.seq - lag_;
-    if (feedback_.empty() || seq < first_seq_ || feedback_texts_.count(seq) > 0) return {};
+    if (feedback_.empty() || header.session != first_.session || seq < first_.seq) return {};
+    if (feedback_texts_.count({header.session, seq}) > 0) return {};
     return {feedback_};
   }
-  void StartSession(const Header& header) override { first_seq_ = header.seq; }
+  void StartSession(const Header& header) override { first_ = header; }
   void ProcessFrame(const Header& header, TextInputs inputs) override {
     std::string text = name() + "(";
     text += (inputs.first ? inputs.first->process : "-") + ",";
     text += (inputs.second ? inputs.second->process : "-") + ",";
     if (!feedback_.empty()) {
-      const auto it = feedback_texts_.find(header.seq - lag_);
+      const auto it = feedback_texts_.find({header.session, header.seq - lag_});
       text += "back " + (it == feedback_texts_.end() ? "-" : std::to_string(it->second.size()));
     }
     frame_done_t message = TextMessage(header.seq, text + ")", header.session);
@@ -76,8 +78,8 @@ class TextNode : public FrameNode<TextInputs> {
   std::string output_;
   std::string feedback_;
   int lag_;
-  std::int64_t first_seq_ = std::numeric_limits<std::int64_t>::max() / 2;
-  std::map<std::int64_t, std::string> feedback_texts_;
+  Header first_;                                                                 // of the session
+  std::map<std::pair<std::int64_t, std::int64_t>, std::string> feedback_texts_;  // by session, seq
 };
 
 }  // namespace airdos
