@@ -88,6 +88,7 @@ void ParallelBus::Start() {
   for (std::size_t i = 0; i < members().size(); ++i) workers_.push_back(std::make_unique<Worker>());
   FindFeedback();
   has_threads_ = !HasCircle();
+  is_serial_ = !has_threads_;
   if (!has_threads_) {  // nobody waits for anybody where one thread does all
     for (const auto& worker : workers_) worker->predecessors.clear();
     return;
@@ -324,7 +325,10 @@ void ParallelBus::PublishFrame(std::vector<Envelope> frame) {
   session_ = session;
   if (!is_serial_ && is_plain) {
     WaitUntil([this] { return HasRoom() || IsQuiet(); }, &lock);
-    if (!HasRoom()) SettleAll(&lock);
+    if (!HasRoom()) {
+      ++num_stalls_;
+      SettleAll(&lock);
+    }
   }
   if (!is_serial_ && is_plain) {
     for (Envelope& message : frame) PostInput(std::move(message));
@@ -332,7 +336,7 @@ void ParallelBus::PublishFrame(std::vector<Envelope> frame) {
     changed_.notify_all();
     return;
   }
-  ++num_serial_frames_;
+  ++num_stalls_;
   for (Envelope& message : frame) {
     PostInput(std::move(message));
     DeliverRest(&lock);

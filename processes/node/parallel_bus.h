@@ -64,8 +64,8 @@ class ParallelBus : public Bus {
 
   /// Most messages that were ever held at a time.
   std::size_t max_held() const { return max_held_; }
-  /// Frames that went the serial way.
-  std::int64_t num_serial_frames() const { return num_serial_frames_; }
+  /// How often the serial way was taken within a session.
+  std::int64_t num_stalls() const { return num_stalls_; }
 
  private:
   using Lock = std::unique_lock<std::mutex>;
@@ -115,7 +115,7 @@ class ParallelBus : public Bus {
   bool has_threads_ = false;
   bool is_serial_ = false;  // the serial way is taken
   std::optional<std::int64_t> session_;
-  std::int64_t num_serial_frames_ = 0;
+  std::int64_t num_stalls_ = 0;
   std::size_t max_held_ = 0;
 
   std::mutex mutex_;  // of all below

@@ -59,10 +59,11 @@ class ReplayTest : public testing::Test {
     return nodes;
   }
 
-  ReplayResult RunReplay(const std::string& in, const std::string& out,
-                         bool writes_inputs = false) const {
+  ReplayResult RunReplay(const std::string& in, const std::string& out, bool writes_inputs = false,
+                         bool is_parallel = false) const {
     LogSource source(folder_ + in);
     ReplayOptions options;
+    options.is_parallel = is_parallel;
     if (!out.empty()) options.out_path = folder_ + out;
     options.writes_inputs = writes_inputs;
     return Replay(&source, MakeNodes(), options);
@@ -84,6 +85,45 @@ TEST_F(ReplayTest, TwiceGivesTheSameBytes) {
   EXPECT_EQ(Bytes("1.lcm"), Bytes("2.lcm"));
   EXPECT_EQ(first.log_sha256, second.log_sha256);
   EXPECT_EQ(first.remarks, std::vector<std::string>());
+}
+
+TEST_F(ReplayTest, InParallelGivesTheSame) {
+  WriteInputLog("in.lcm", 50);
+  for (const bool writes_inputs : {false, true}) {
+    const ReplayResult serial = RunReplay("in.lcm", "1.lcm", writes_inputs);
+    const ReplayResult parallel = RunReplay("in.lcm", "2.lcm", writes_inputs, true);
+    EXPECT_EQ(Bytes("1.lcm"), Bytes("2.lcm"));
+    EXPECT_EQ(parallel.log_sha256, serial.log_sha256);
+    EXPECT_EQ(parallel.num_events, serial.num_events);
+    EXPECT_EQ(FormatDigests(parallel.digests), FormatDigests(serial.digests));
+    EXPECT_EQ(parallel.remarks, serial.remarks);
+    EXPECT_EQ(parallel.timing.at("frontend").cpu_ms.size(), 50u);
+  }
+}
+
+/// Cannot be read to its end.
+class BrokenSource : public LogSource {
+ public:
+  using LogSource::LogSource;
+  std::vector<Envelope> NextFrame() override {
+    if (++num_frames_ > 8) throw InputError("in.lcm: cannot be read");
+    return LogSource::NextFrame();
+  }
+
+ private:
+  int num_frames_ = 0;
+};
+
+TEST_F(ReplayTest, WhatCameBeforeABrokenSourceIsInTheLog) {
+  WriteInputLog("in.lcm", 10);
+  for (const bool is_parallel : {false, true}) {
+    BrokenSource source(folder_ + "in.lcm");
+    ReplayOptions options;
+    options.out_path = folder_ + "out.lcm";
+    options.is_parallel = is_parallel;
+    EXPECT_THROW(Replay(&source, MakeNodes(), options), InputError);
+    EXPECT_EQ(DigestLog(options.out_path).at(channel::kStateEstimate).num_messages, 8);
+  }
 }
 
 TEST_F(ReplayTest, OutputLogHoldsOutputsOnlyWithTheFramesTime) {
