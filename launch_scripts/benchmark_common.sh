@@ -4,6 +4,29 @@
 # Processor cores; of the default for --jobs.
 num_cores() { nproc 2> /dev/null || echo 1; }
 
+# parse_options NAMES ARGUMENT…: sets the variable of each option that is named (run-dir fills run_dir) and collects what is no
+# option in the array operands, without a / at its end, and --set, where it is named, in replay_options.
+parse_options() {
+  local names=" $1 " name
+  shift
+  operands=() replay_options=()
+  while (($# > 0)); do
+    name=${1#--}
+    if [[ $1 == --help || $1 == -h ]]; then
+      print_help
+      exit 0
+    elif [[ $1 == -* ]]; then
+      [[ $1 == --* && $names == *" $name "* ]] || die_usage "unknown option '$1' (see --help)"
+      need_value "$@"
+      if [[ $name == set ]]; then replay_options+=(--set "$2"); else printf -v "${name//-/_}" '%s' "$2"; fi
+      shift
+    else
+      operands+=("${1%/}")
+    fi
+    shift
+  done
+}
+
 # need_number OPTION VALUE: a whole number above zero.
 need_number() { [[ $2 =~ ^[1-9][0-9]*$ ]] || die_usage "$1: not a whole number above 0: '$2'"; }
 
@@ -42,7 +65,7 @@ replay_sequence() {
   shift 3
   mkdir -p "$run"
   rm -f "$run/evaluation.json" # of an earlier run
-  "$AIRDOS_BIN/airdos-replay" "$folder" --run-dir "$run" --timing "$run/timing.json" --no-progress "$@" \
+  "$AIRDOS_BIN/airdos-replay" "$folder" --run-dir "$run" --timing "$run/timing.json" --no-progress --threads 1 "$@" \
     > "$run/replay.log" 2>&1 || die "$name: airdos-replay failed (log: $run/replay.log)"
 }
 

@@ -27,33 +27,10 @@ readonly published_orb_slam=(0.933 2.033 1.547 0.176 0.240 2.633)
 readonly published_airdos=(0.934 2.027 1.618 0.172 0.234 2.760)
 
 modes='mask_only on' run_dir=$AIRDOS_RUNS/kitti_tracking jobs=$(num_cores)
-dataset='' replay_options=()
-while (($# > 0)); do
-  case $1 in
-    --modes | --jobs | --run-dir)
-      need_value "$@"
-      name=${1#--}
-      printf -v "${name//-/_}" '%s' "$2"
-      shift
-      ;;
-    --set)
-      need_value "$@"
-      replay_options+=(--set "$2")
-      shift
-      ;;
-    --help | -h)
-      print_help
-      exit 0
-      ;;
-    -*) die_usage "unknown option '$1' (see --help)" ;;
-    *)
-      [[ -z $dataset ]] || die_usage "more than one folder: '$1' (see --help)"
-      dataset=${1%/}
-      ;;
-  esac
-  shift
-done
-[[ -n $dataset ]] || die_usage "no folder given (see --help)"
+parse_options 'modes jobs run-dir set' "$@"
+((${#operands[@]} < 2)) || die_usage "more than one folder: '${operands[1]}' (see --help)"
+((${#operands[@]} == 1)) || die_usage "no folder given (see --help)"
+dataset=${operands[0]}
 [[ -d $dataset ]] || die_usage "no folder '$dataset'"
 need_number --jobs "$jobs"
 need_modes "$modes"

@@ -21,29 +21,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
 caps='3 5 8 15 30 100 uncapped' run_dir=$AIRDOS_RUNS/people_help jobs=$(num_cores)
-folders=() replay_options=()
-while (($# > 0)); do
-  case $1 in
-    --caps | --jobs | --run-dir)
-      need_value "$@"
-      name=${1#--}
-      printf -v "${name//-/_}" '%s' "$2"
-      shift
-      ;;
-    --set)
-      need_value "$@"
-      replay_options+=(--set "$2")
-      shift
-      ;;
-    --help | -h)
-      print_help
-      exit 0
-      ;;
-    -*) die_usage "unknown option '$1' (see --help)" ;;
-    *) folders+=("${1%/}") ;;
-  esac
-  shift
-done
+parse_options 'caps jobs run-dir set' "$@"
+folders=("${operands[@]}")
 need_number --jobs "$jobs"
 [[ $caps =~ [^[:space:]] ]] || die_usage "--caps: the list is empty"
 for cap in $caps; do [[ $cap == uncapped ]] || need_number --caps "$cap"; done

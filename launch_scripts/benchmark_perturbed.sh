@@ -32,29 +32,8 @@ declare -A setting_of=(
 )
 
 modes='mask_only on' run_dir=$AIRDOS_RUNS/perturbed jobs=$(num_cores)
-folders=() replay_options=()
-while (($# > 0)); do
-  case $1 in
-    --modes | --jobs | --run-dir)
-      need_value "$@"
-      name=${1#--}
-      printf -v "${name//-/_}" '%s' "$2"
-      shift
-      ;;
-    --set)
-      need_value "$@"
-      replay_options+=(--set "$2")
-      shift
-      ;;
-    --help | -h)
-      print_help
-      exit 0
-      ;;
-    -*) die_usage "unknown option '$1' (see --help)" ;;
-    *) folders+=("${1%/}") ;;
-  esac
-  shift
-done
+parse_options 'modes jobs run-dir set' "$@"
+folders=("${operands[@]}")
 need_number --jobs "$jobs"
 need_modes "$modes"
 need_sequences "${folders[@]}"

@@ -17,29 +17,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
 modes='off mask_only on' run_dir=$AIRDOS_RUNS/benchmark
-folders=() replay_options=()
-while (($# > 0)); do
-  case $1 in
-    --modes | --run-dir)
-      need_value "$@"
-      name=${1#--}
-      printf -v "${name//-/_}" '%s' "$2"
-      shift
-      ;;
-    --set)
-      need_value "$@"
-      replay_options+=(--set "$2")
-      shift
-      ;;
-    --help | -h)
-      print_help
-      exit 0
-      ;;
-    -*) die_usage "unknown option '$1' (see --help)" ;;
-    *) folders+=("${1%/}") ;;
-  esac
-  shift
-done
+parse_options 'modes run-dir set' "$@"
+folders=("${operands[@]}")
 need_modes "$modes"
 need_sequences "${folders[@]}"
 need_benchmark_programs

@@ -28,33 +28,10 @@ readonly published_orb_slam=(0.0788 0.0060 0.0657 0.0196 0.0148 1.0984 0.8476)
 readonly published_vdo_slam=(0.0994 0.6129 0.3813 0.3879 0.2175 0.2400 0.6628)
 
 modes='off mask_only on' run_dir=$AIRDOS_RUNS/shibuya jobs=$(num_cores)
-dataset='' replay_options=()
-while (($# > 0)); do
-  case $1 in
-    --modes | --jobs | --run-dir)
-      need_value "$@"
-      name=${1#--}
-      printf -v "${name//-/_}" '%s' "$2"
-      shift
-      ;;
-    --set)
-      need_value "$@"
-      replay_options+=(--set "$2")
-      shift
-      ;;
-    --help | -h)
-      print_help
-      exit 0
-      ;;
-    -*) die_usage "unknown option '$1' (see --help)" ;;
-    *)
-      [[ -z $dataset ]] || die_usage "more than one folder: '$1' (see --help)"
-      dataset=$1
-      ;;
-  esac
-  shift
-done
-[[ -n $dataset ]] || die_usage "no folder given (see --help)"
+parse_options 'modes jobs run-dir set' "$@"
+((${#operands[@]} < 2)) || die_usage "more than one folder: '${operands[1]}' (see --help)"
+((${#operands[@]} == 1)) || die_usage "no folder given (see --help)"
+dataset=${operands[0]}
 [[ -d $dataset ]] || die_usage "no folder '$dataset'"
 need_number --jobs "$jobs"
 need_modes "$modes"

@@ -2,7 +2,8 @@
 # Runs the processes as they are meant to be: separately, on one LCM URL.
 #
 # Usage: launch_scripts/run_live.sh [--data FOLDER | --log FILE] [options]
-#   --data FOLDER         also start the player on this data set, and end when everything has been worked on
+#   --data FOLDER         also start the player on this data set, and end when everything has been worked on; a log will do
+#   --loop N              of --data: N times, as one long session (default 1); says every 500 frames how far it is
 #   --log FILE            also play this LCM log (only what came from the camera), and end likewise
 #   --speed X             of --log: 1 as recorded, 2 twice as fast, 0 as fast as possible (default 1)
 #   --pace lockstep|realtime
@@ -26,11 +27,11 @@ readonly STOP_DEADLINE_S=20
 readonly IDLE_S=6
 readonly DRAIN_DEADLINE_S=600
 
-data='' log='' speed=1 pace=lockstep url=$AIRDOS_DEFAULT_URL run_dir='' host_network=no is_inside=no
+data='' loop=1 log='' speed=1 pace=lockstep url=$AIRDOS_DEFAULT_URL run_dir='' host_network=no is_inside=no
 original_arguments=("$@")
 while (($# > 0)); do
   case $1 in
-    --data | --log | --speed | --pace | --lcm-url | --run-dir)
+    --data | --loop | --log | --speed | --pace | --lcm-url | --run-dir)
       need_value "$@"
       name=${1#--}
       printf -v "${name//-/_}" '%s' "$2"
@@ -49,7 +50,8 @@ done
 # shellcheck disable=SC2154  # --lcm-url fills lcm_url
 url=${lcm_url:-$url}
 [[ -z $data || -z $log ]] || die_usage "--data and --log exclude each other"
-[[ -z $data || -d $data ]] || die_usage "--data: no folder '$data'"
+[[ $loop =~ ^[1-9][0-9]*$ ]] || die_usage "--loop: not a whole number above 0: '$loop'"
+[[ -z $data || -e $data ]] || die_usage "--data: no folder '$data'"
 [[ -z $log || -f $log ]] || die_usage "--log: no file '$log'"
 [[ $speed =~ ^[0-9]+(\.[0-9]+)?$ ]] || die_usage "--speed: not a number: '$speed'"
 [[ $pace == lockstep || $pace == realtime ]] || die_usage "--pace: '$pace' is neither lockstep nor realtime"
@@ -207,8 +209,10 @@ if [[ $host_network == no ]]; then
 fi
 
 if [[ -n $data ]]; then
+  player_options=()
+  if ((loop > 1)); then player_options=(--loop "$loop" --one-session --say-every 500); fi
   start player "$AIRDOS_BIN/airdos-stereo-player" --data "$data" "${arguments[@]}" \
-    --resolved-config "$run_dir/stereo_player.yaml"
+    --resolved-config "$run_dir/stereo_player.yaml" "${player_options[@]}"
 elif [[ -n $log ]]; then
   start player lcm-logplayer -s "$speed" -e "$AIRDOS_CAMERA_CHANNELS" -l "$url" "$log"
 fi

@@ -20,10 +20,11 @@ bool Contains(const std::array<const char*, kSize>& channels, const std::string&
 // A frame of another session is newer, whatever its number.
 bool IsNewer(const Header& a, const Header& b) { return a.session != b.session || a.seq > b.seq; }
 
+constexpr std::size_t kFingerprintBytes = 8;
+
 }  // namespace
 
 std::optional<Header> PeekHeader(const void* data, std::size_t size) {
-  constexpr std::size_t kFingerprintBytes = 8;
   if (size < kFingerprintBytes + 24) return std::nullopt;
   const auto* bytes = static_cast<const std::uint8_t*>(data) + kFingerprintBytes;
   const auto read = [bytes](std::size_t offset) {
@@ -32,6 +33,16 @@ std::optional<Header> PeekHeader(const void* data, std::size_t size) {
     return static_cast<std::int64_t>(value);
   };
   return Header{read(0), read(8), read(16)};
+}
+
+void WriteHeader(const Header& header, void* data, std::size_t size) {
+  if (!PeekHeader(data, size)) return;
+  auto* bytes = static_cast<std::uint8_t*>(data) + kFingerprintBytes;
+  for (const std::int64_t value : {header.utime, header.seq, header.session}) {
+    for (int i = 7; i >= 0; --i) {
+      *bytes++ = static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i));
+    }
+  }
 }
 
 bool IsInputChannel(const std::string& name) {

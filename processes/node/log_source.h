@@ -18,6 +18,8 @@ namespace airdos {
 /// What every message of ours starts with, without knowing its type; nothing if the payload is too
 /// short.
 std::optional<Header> PeekHeader(const void* data, std::size_t size);
+/// Puts another one in its place; nothing is done if the payload is too short.
+void WriteHeader(const Header& header, void* data, std::size_t size);
 
 /// The images and what else comes from outside (never what processes made of it).
 bool IsInputChannel(const std::string& channel);

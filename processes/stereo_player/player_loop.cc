@@ -11,6 +11,7 @@
 #include "common/util/error.h"
 #include "processes/node/channels.h"
 #include "processes/node/event_log.h"
+#include "processes/node/looped_source.h"
 #include "processes/node/process_usage.h"
 #include "processes/stereo_player/dataset_source.h"
 
@@ -47,6 +48,13 @@ LcmTransport::Handler HandlerOf(Handle handle) {
 }  // namespace
 
 std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std::int64_t session) {
+  if (options.is_one_session) {
+    PlayerOptions once = options;
+    once.is_one_session = false;
+    once.num_loops = 1;
+    return std::make_unique<LoopedSource>([=] { return OpenPlayerSource(once, session); },
+                                          options.num_loops);
+  }
   const std::int64_t last = options.last.value_or(std::numeric_limits<std::int64_t>::max());
   if (std::filesystem::is_directory(options.data)) {
     return std::make_unique<DatasetSource>(options.data, options.first, last, session,
@@ -94,7 +102,8 @@ void PlayerLoop::Run() {
                           gate_.OnFrameDone(done, SteadyClock_s());
                         }));
   const double start_s = SteadyClock_s();
-  for (int loop = 0; loop < options_.num_loops || options_.num_loops == 0; ++loop) {
+  const int num_loops = options_.is_one_session ? 1 : options_.num_loops;
+  for (int loop = 0; loop < num_loops || num_loops == 0; ++loop) {
     if (StopRequested()) break;
     PlayOnce(open_source_(loop).get());
   }
@@ -158,6 +167,8 @@ void PlayerLoop::PublishFrame(const std::vector<Envelope>& messages, const Heade
   }
   gate_.OnPublished(header.session, header.seq, SteadyClock_s());
   ++num_published_;
+  if (options_.say_every > 0 && num_published_ % options_.say_every == 0)
+    Say(std::to_string(num_published_) + " frames published");
 }
 
 void PlayerLoop::Publish(const Envelope& message) {

@@ -45,6 +45,10 @@ PlayerArguments::PlayerArguments(CLI::App* app) {
   app->add_option("--loop", options_.num_loops, "How often to play, each a session; 0: for ever")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
+  app->add_flag("--one-session", options_.is_one_session,
+                "With --loop: one long session, its times and image numbers go on");
+  app->add_option("--say-every", options_.say_every, "Say how far it is every so many frames")
+      ->check(CLI::NonNegativeNumber);
   app->add_option("--pace", pace_, "lockstep: nothing is ever lost; realtime: like cameras")
       ->capture_default_str()
       ->check(CLI::IsMember({"lockstep", "realtime"}));
@@ -67,6 +71,8 @@ PlayerOptions PlayerArguments::Resolve() const {
   using Encoding = ImagePackerOptions::Encoding;
   PlayerOptions options = options_;
   if (options.data.empty()) throw InputError("--data FOLDER or LOG is missing");
+  if (options.is_one_session && options.num_loops == 0)
+    throw InputError("--one-session needs a --loop that ends");
   options.pace = pace_ == "lockstep" ? PlayerPace::kLockstep : PlayerPace::kRealtime;
   options.image.encoding = encoding_ == "auto"   ? Encoding::kAuto
                            : encoding_ == "jpeg" ? Encoding::kJpeg

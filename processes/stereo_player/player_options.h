@@ -21,6 +21,8 @@ struct PlayerOptions {
   std::optional<std::int64_t> last;     ///< included; without: the last one there is
   std::optional<std::int64_t> session;  ///< without: the wall clock, us
   int num_loops = 1;                    ///< 0: until stopped; each loop is a session of its own
+  bool is_one_session = false;          ///< or not: capture times and image numbers go on
+  std::int64_t say_every = 0;           ///< frames; 0: never
   PlayerPace pace = PlayerPace::kLockstep;
   double rate = 1;        ///< realtime: capture time that passes in a second
   std::string write_log;  ///< file to write instead of publishing

@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "processes/node/looped_source.h"
 #include "processes/node/process_cli.h"
 #include "processes/tools/replay.h"
 #include "processes/tools/replay_setup.h"
@@ -20,6 +21,7 @@ int main(int argc, char** argv) {
   std::int64_t first = std::numeric_limits<std::int64_t>::min();
   std::int64_t last = std::numeric_limits<std::int64_t>::max();
   std::string threads = "auto";
+  int num_loops = 1;
   bool no_progress = false;
   bool digest = false;
   bool digest_only = false;
@@ -38,6 +40,8 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"off", "on"}));
   app.add_option("--first", first, "first image number");
   app.add_option("--last", last, "last image number");
+  app.add_option("--loop", num_loops, "how often to play it, as one long session")
+      ->check(CLI::Range(1, 1000000));
   app.add_flag("--from-features", setup.from_features,
                "run only the optimizer and the map recorder, on the features and people that the "
                "log holds (airdos-simulate)");
@@ -58,12 +62,13 @@ int main(int argc, char** argv) {
     cv::setNumThreads(1);
     const auto inputs =
         setup.from_features ? airdos::LogInputs::kFeatures : airdos::LogInputs::kImages;
-    const auto source = airdos::OpenFrameSource(input, first, last, inputs);
+    const auto open = [&] { return airdos::OpenFrameSource(input, first, last, inputs); };
+    airdos::LoopedSource source(open, num_loops);
     const auto nodes = airdos::MakeReplayNodes(setup);
     options.is_parallel = threads == "auto" && std::thread::hardware_concurrency() > 1;
     airdos::ProgressBar bar;
     if (!no_progress) options.on_progress = [&bar](double fraction) { bar.Show(fraction); };
-    const airdos::ReplayResult result = airdos::Replay(source.get(), nodes, options);
+    const airdos::ReplayResult result = airdos::Replay(&source, nodes, options);
     if (!timing_path.empty()) airdos::WriteTiming(result, timing_path);
     std::cout << (digest ? airdos::FormatDigests(result.digests) : airdos::FormatSummary(result));
     if (digest) {  // which must not hide that something was rejected

@@ -134,9 +134,10 @@ class LiveTest : public testing::Test {
   }
 
   // What airdos-replay makes of the log.
-  void RunReplay(const std::string& out) {
-    ChildProcess* replay = Start("airdos-replay", {log_, "--out", folder_ + out, "--run-dir",
-                                                   folder_ + "map_" + out, "--no-progress"});
+  void RunReplay(const std::string& out, const std::string& threads = "auto") {
+    ChildProcess* replay =
+        Start("airdos-replay", {log_, "--out", folder_ + out, "--run-dir", folder_ + "map_" + out,
+                                "--no-progress", "--threads", threads});
     ASSERT_EQ(replay->Wait(kRunDeadline_s), 0) << replay->Errors();
     processes_.erase("airdos-replay");
   }
@@ -155,12 +156,16 @@ class LiveTest : public testing::Test {
   std::map<std::string, std::unique_ptr<ChildProcess>> processes_;
 };
 
-TEST_F(LiveTest, ReplayTwiceGivesTheSameBytes) {
-  RunReplay("1.lcm");
-  RunReplay("2.lcm");
-  const std::string first = Bytes(folder_ + "1.lcm");
-  EXPECT_FALSE(first.empty());
-  EXPECT_TRUE(first == Bytes(folder_ + "2.lcm"));
+TEST_F(LiveTest, ReplayTwiceGivesTheSameBytesInOneThreadAndInSeveral) {
+  RunReplay("1.lcm", "1");
+  RunReplay("2.lcm", "auto");
+  for (const std::string name : {"1.lcm", "map_1.lcm/map.airdos"}) {
+    std::string other = name;
+    other.replace(other.find('1'), 1, "2");
+    const std::string first = Bytes(folder_ + name);
+    EXPECT_FALSE(first.empty());
+    EXPECT_TRUE(first == Bytes(folder_ + other)) << name;
+  }
 }
 
 TEST_F(LiveTest, ProcessesFedByLogplayerSayWhatReplayComputes) {
