@@ -30,12 +30,12 @@ parse_options() {
 # need_number OPTION VALUE: a whole number above zero.
 need_number() { [[ $2 =~ ^[1-9][0-9]*$ ]] || die_usage "$1: not a whole number above 0: '$2'"; }
 
-# need_modes LIST: what people may be used for.
+# need_modes LIST [OPTION]: what people may be used for.
 need_modes() {
-  local mode
-  [[ $1 =~ [^[:space:]] ]] || die_usage "--modes: the list is empty"
+  local mode option=${2:---modes}
+  [[ $1 =~ [^[:space:]] ]] || die_usage "$option: the list is empty"
   for mode in $1; do
-    [[ $mode =~ ^(off|mask_only|on)$ ]] || die_usage "--modes: '$mode' is none of off, mask_only, on"
+    [[ $mode =~ ^(off|mask_only|on)$ ]] || die_usage "$option: '$mode' is none of off, mask_only, on"
   done
 }
 

@@ -43,12 +43,12 @@ rm -f "$run_dir"/{memory.tsv,memory.md,player.log,map.airdos}
 trap end_jobs EXIT
 start_job 1 "$(dirname "$0")/run_live.sh" --data "${operands[0]}" --loop "$loops" --run-dir "$run_dir" > "$run_dir/run_live.log"
 live_pid=$!
-seen=0
+last_frame=''
 while kill -0 "$live_pid" 2> /dev/null; do
-  frame=$(sed -n 's/.*: \([0-9]*\) frames published$/\1/p' "$run_dir/player.log" 2> /dev/null | tail -n 1)
-  if [[ -n $frame && $frame != "$seen" ]]; then
+  frame=$(sed -n 's/.*: \([0-9]*\) frames published$/\1/p' "$run_dir/player.log" 2> /dev/null | tail -n 1) || frame=''
+  if [[ -n $frame && $frame != "$last_frame" ]]; then
     sample "$frame"
-    seen=$frame
+    last_frame=$frame
   fi
   sleep 0.5
 done

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   airdos::AddTrajectoryCommand(&app);
   airdos::AddPeopleCommand(&app);
   airdos::AddCurveCommand(&app);
+  airdos::AddSpeedCommand(&app);
   airdos::AddAblationCommand(&app);
   try {
     app.parse(argc, argv);

@@ -13,6 +13,7 @@ namespace airdos {
 void AddTrajectoryCommand(CLI::App* app);
 void AddPeopleCommand(CLI::App* app);
 void AddCurveCommand(CLI::App* app);
+void AddSpeedCommand(CLI::App* app);
 void AddAblationCommand(CLI::App* app);
 
 /// Writes a file of indented JSON. Throws InputError where it cannot be written.

@@ -1,5 +1,6 @@
 #include "processes/tools/replay.h"
 
+#include <sys/resource.h>
 #include <time.h>
 
 #include <algorithm>
@@ -162,6 +163,12 @@ Statistics StatisticsOf(std::vector<double> values) {
   return {sum / static_cast<double>(values.size()), quantile(0.50), quantile(0.99)};
 }
 
+double PeakMemoryMb() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
 // The next frame; where the source fails, what came before has its effect first.
 std::vector<Envelope> NextFrame(FrameSource* source, Bus* bus) {
   try {
@@ -252,7 +259,9 @@ void WriteTiming(const ReplayResult& result, const std::string& path) {
   };
   nlohmann::json json{{"num_frames", result.num_frames},
                       {"num_posed", result.num_posed},
-                      {"wall_s", result.wall_s}};
+                      {"num_events", result.num_events},
+                      {"wall_s", result.wall_s},
+                      {"peak_memory_mb", PeakMemoryMb()}};
   for (const auto& [name, timing] : result.timing) {
     json["processes"][name] = {{"num_frames", timing.wall_ms.size()},
                                {"wall_ms", to_json(timing.wall_ms)},

@@ -58,7 +58,8 @@ std::map<std::string, ChannelDigests::Entry> DigestLog(const std::string& path);
 std::string FormatDigests(const std::map<std::string, ChannelDigests::Entry>& digests);
 /// Frames, ms per frame of each process, digests and remarks, for people.
 std::string FormatSummary(const ReplayResult& result);
-/// Writes the times per process as JSON. Throws InputError if the file cannot be written.
+/// Writes the times per process, and the most memory this process had, as JSON. Throws InputError
+/// if the file cannot be written.
 void WriteTiming(const ReplayResult& result, const std::string& path);
 
 }  // namespace airdos

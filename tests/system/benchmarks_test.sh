@@ -30,7 +30,7 @@ says() { grep -qF -e "$1" "$work/out" "$work/err" || fail "'$(cat "$work/out" "$
 
 wrong_options_exit_2_in_one_line() {
   local script
-  for script in sequences people_help perturbed shibuya kitti_tracking; do
+  for script in sequences people_help perturbed shibuya kitti_tracking speed memory; do
     expect 0 "Usage: launch_scripts/benchmark_$script.sh" "$scripts/benchmark_$script.sh" --help
     expect 2 "--no-such-option" "$scripts/benchmark_$script.sh" --no-such-option
     expect 2 "no folder '/nonexistent'" "$scripts/benchmark_$script.sh" /nonexistent
@@ -44,6 +44,9 @@ wrong_options_exit_2_in_one_line() {
     expect 2 "--modes: 'full' is none of" "$scripts/benchmark_$script.sh" "$work" --modes 'on full'
   done
   expect 2 "--caps: not a whole number above 0: 'x'" "$scripts/benchmark_people_help.sh" "$work" --caps '3 x'
+  expect 2 "--people: 'full' is none of" "$scripts/benchmark_speed.sh" "$work" --people full
+  expect 2 "--live: 'maybe' is neither yes nor no" "$scripts/benchmark_speed.sh" "$work" --live maybe
+  expect 2 "--loops: not a whole number above 0: '0'" "$scripts/benchmark_memory.sh" "$work" --loops 0
   mkdir -p "$work/a/same" "$work/b/same"
   expect 2 "two sequences have the name 'same'" "$scripts/benchmark_perturbed.sh" "$work/a/same/" "$work/b/same"
   expect 2 "more than one folder" "$scripts/benchmark_shibuya.sh" "$work/a" "$work/b"
@@ -61,11 +64,14 @@ echo "$*" >> "${0%/*}/../calls"
 [[ $1 != *broken* ]] || exit 1
 while (($# > 0)); do
   if [[ $1 == --run-dir ]]; then run=$2; fi
+  if [[ $1 == --timing ]]; then timing=$2; fi
   shift
 done
+mkdir -p "$run"
 echo truth > "$run/ground_truth.tum"
 echo estimate > "$run/trajectory.tum"
-echo '{"processes": {"frontend": {"cpu_ms": {"mean": 1}}, "human_tracker": {"cpu_ms": {"mean": 2}}, "optimizer": {"cpu_ms": {"mean": 3}}}}' > "$run/timing.json"
+echo '{"num_frames": 100, "num_events": 900, "wall_s": 5, "peak_memory_mb": 77,
+  "processes": {"frontend": {"cpu_ms": {"mean": 1, "p50": 1.5, "p99": 7}}, "human_tracker": {"cpu_ms": {"mean": 2}}, "optimizer": {"cpu_ms": {"mean": 3}}}}' > "$timing"
 FAKE
   cat > "$work/bin/airdos-evaluate" << 'FAKE'
 #!/bin/bash
@@ -80,6 +86,10 @@ while (($# > 0)); do
   esac
   shift
 done
+if [[ $command == speed ]]; then
+  cat "$runs"
+  exit 0
+fi
 if [[ $command == curve ]]; then
   echo "curve of $(wc -l < "$runs") runs"
   exit 0
@@ -158,6 +168,16 @@ kitti_tracking_takes_28_from_testing() {
   (($(calls "$base/testing/image_02/0028 --run-dir") == 1)) || fail "runs: $(cat "$work/calls")"
 }
 
+speed_runs_in_one_thread_and_in_several() {
+  run 0 benchmark_speed "$work/sets/one" "$work/sets/two" --live no --people on
+  (($(calls '--threads 1') == 2 && $(calls '--threads auto') == 2 && $(calls '--people on') == 4)) || fail "runs: $(cat "$work/calls")"
+  says '{"sequence":"one","num_frames":100,"processes":{"frontend":{"p50_ms":1.5,"p99_ms":7,"peak_memory_mb":null}'
+  says '"serial_fps":20,"parallel_fps":20,"replay_memory_mb":77,"live_fps":null,"messages_per_s":null}'
+  says 'airdos_solver_benchmark is not built'
+  run 1 benchmark_speed "$work/sets/broken" --live no
+  says "broken: airdos-replay failed"
+}
+
 sequences_prints_a_row_a_run() {
   run 0 benchmark_sequences "$work/sets/one" --modes mask_only
   says '| one | mask_only | 98 / 100 | 0.0100 | 0.0020 | 0.2000 | 1.00 | 1 / 2 / 3 |'
@@ -176,4 +196,5 @@ perturbed_gives_median_and_worst
 shibuya_says_what_is_missing_failed_or_ambiguous
 kitti_tracking_takes_28_from_testing
 sequences_prints_a_row_a_run
+speed_runs_in_one_thread_and_in_several
 echo "all checks passed"
