@@ -189,7 +189,8 @@ std::vector<SolveTime> ReadSolveTimes(const std::string& path) {
   std::ifstream file = OpenText(path);
   std::vector<SolveTime> solves;
   try {
-    for (const json& object : json::parse(file).at("benchmarks")) {
+    const json report = json::parse(file);
+    for (const json& object : report.at("benchmarks")) {
       if (const auto solve = ParseSolve(object)) solves.push_back(*solve);
     }
   } catch (const InputError& error) {
