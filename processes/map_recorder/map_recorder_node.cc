@@ -144,7 +144,19 @@ void MapRecorderNode::ProcessFrame(const Header& header, MapRecorderInputs input
     AddUpdate(update, &changes_);
     if (changes_.ApproximateBytes() > kLargeChunkBytes) WriteChunk();
   }
+  TakeOldGroundTruth(header.seq);
   if (++num_frames_in_chunk_ >= options_.chunk_frames) WriteChunk();
+}
+
+// The newest one stays: the end of the map needs its axes.
+void MapRecorderNode::TakeOldGroundTruth(std::int64_t seq) {
+  const auto poses = ground_truth_.find(session_);
+  if (poses == ground_truth_.end()) return;
+  while (poses->second.size() > 1 && poses->second.begin()->first < seq - kGroundTruthLag) {
+    SetGroundTruth(*poses->second.begin());
+    poses->second.erase(poses->second.begin());
+    --num_ground_truth_;
+  }
 }
 
 std::string MapRecorderNode::AddGroundTruth(const pose_t& message) {
@@ -158,6 +170,13 @@ std::string MapRecorderNode::AddGroundTruth(const pose_t& message) {
   }
   ++num_ground_truth_;
   return "";
+}
+
+void MapRecorderNode::SetGroundTruth(const std::pair<const std::int64_t, GroundTruth>& pose) {
+  MapFrame frame;
+  frame.utime = pose.second.utime;
+  frame.ground_truth = pose.second.pose;
+  changes_.SetFrame({pose.first}, frame);
 }
 
 void MapRecorderNode::Append(const MapChunk& chunk) {
@@ -179,12 +198,9 @@ void MapRecorderNode::CloseSession() {
   WriteChunk();
   const std::map<std::int64_t, GroundTruth>& poses = ground_truth_[session_];
   std::int8_t axes = pose_t::AXES_INVALID;
-  for (const auto& [seq, truth] : poses) {
-    MapFrame frame;
-    frame.utime = truth.utime;
-    frame.ground_truth = truth.pose;
-    axes = truth.axes;
-    changes_.SetFrame({seq}, frame);
+  for (const auto& pose : poses) {
+    SetGroundTruth(pose);
+    axes = pose.second.axes;
     if (++num_frames_in_chunk_ >= kGroundTruthPerChunk) WriteChunk();
   }
   WriteChunk();

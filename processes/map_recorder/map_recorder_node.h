@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "airdos/map_update_t.hpp"
@@ -31,15 +32,19 @@ struct MapRecorderInputs {
 /// Writes what the optimizer says into a 4-D map, `<directory>/map.airdos`, chunk by chunk, and
 /// makes the exports from that file at the end. What the file holds depends on what each channel
 /// carried only, not on how they interleaved: frames are joined by number, and calibration and
-/// ground truth, which nothing waits for, go into the last chunks. It publishes nothing.
+/// ground truth, which nothing waits for, are written late: the calibration at the end, ground
+/// truth once kGroundTruthLag newer frames are done, and what is left, or comes later, at the end.
+/// It publishes nothing.
 ///
 /// A second session goes to `<directory>/session_2`, and so on. A map that an earlier run did not
 /// close (a kill) is kept under another name, one that it did close is replaced.
 ///
-/// Memory: the open chunk and the ground truth (at most kMaxGroundTruth poses).
+/// Memory: the open chunk and the ground truth that is not written yet (at most kMaxGroundTruth
+/// poses).
 class MapRecorderNode : public FrameNode<MapRecorderInputs> {
  public:
   static constexpr std::size_t kMaxGroundTruth = 1000000;
+  static constexpr std::int64_t kGroundTruthLag = 1000;
 
   /// Throws InputError where the directory cannot be made or written to.
   explicit MapRecorderNode(const MapRecorderOptions& options);
@@ -60,7 +65,15 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   void ProcessFrame(const Header& header, MapRecorderInputs inputs) override;
 
  private:
+  struct GroundTruth {
+    std::int8_t axes = 0;
+    std::int64_t utime = 0;
+    Se3 pose;
+  };
+
   std::string AddGroundTruth(const pose_t& message);
+  void TakeOldGroundTruth(std::int64_t seq);
+  void SetGroundTruth(const std::pair<const std::int64_t, GroundTruth>& pose);
   void Append(const MapChunk& chunk);
   void WriteChunk();
   void CloseSession();
@@ -73,11 +86,6 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   MapDelta changes_;                     // of the open chunk
   int num_frames_in_chunk_ = 0;
 
-  struct GroundTruth {
-    std::int8_t axes = 0;
-    std::int64_t utime = 0;
-    Se3 pose;
-  };
   // By session, then image number.
   std::map<std::int64_t, std::map<std::int64_t, GroundTruth>> ground_truth_;
   std::map<std::int64_t, std::map<std::int64_t, StereoCamera>> cameras_;

@@ -225,6 +225,25 @@ TEST_F(MapRecorderTest, WhatAKillLeavesIsReadable) {
   EXPECT_EQ(map.humans.size(), 8u);
 }
 
+TEST_F(MapRecorderTest, WritesOldGroundTruthWhileItRuns) {
+  const std::int64_t num_old = 100;
+  const auto num_frames = static_cast<int>(MapRecorderNode::kGroundTruthLag + num_old);
+  const auto count = [&] {
+    std::int64_t num = 0;
+    for (const auto& [id, frame] : Read(folder_ + "/map").frames) {
+      if (!frame.ground_truth) continue;
+      EXPECT_EQ(frame.ground_truth->translation.y(), static_cast<double>(id.value));
+      ++num;
+    }
+    return num;
+  };
+  MapRecorderNode node(Options("map"));
+  Feed(Recording(num_frames), &node);
+  EXPECT_EQ(count(), num_old - 1);  // else memory would grow with the run's length
+  node.Finish();
+  EXPECT_EQ(count(), num_frames);
+}
+
 TEST_F(MapRecorderTest, KeepsAMapThatWasNotClosed) {
   {
     MapRecorderNode node(Options("a"));
