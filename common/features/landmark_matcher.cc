@@ -3,18 +3,57 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <opencv2/features2d.hpp>
+#include <utility>
 
 namespace airdos {
 namespace {
 
-cv::Mat DescriptorMatrix(std::size_t count) {
-  return cv::Mat(static_cast<int>(count), 32, CV_8UC1);
+/// The feature nearest to a descriptor and the one after it; of equals the first.
+struct NearestTwo {
+  int best = -1;
+  int second = -1;
+  int best_distance = 257;  // bits
+  int second_distance = 257;
+};
+
+/// Compiled for several processors: see FindNearestTwo().
+[[gnu::always_inline]] inline NearestTwo FindNearestTwoInline(
+    const Descriptor& query, const std::vector<Descriptor>& descriptors) {
+  NearestTwo nearest;
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    int distance = 0;
+    for (std::size_t word = 0; word < query.size(); ++word)
+      distance += __builtin_popcountll(query[word] ^ descriptors[i][word]);
+    if (distance >= nearest.second_distance) continue;
+    nearest.second = static_cast<int>(i);
+    nearest.second_distance = distance;
+    if (distance >= nearest.best_distance) continue;
+    std::swap(nearest.second, nearest.best);
+    std::swap(nearest.second_distance, nearest.best_distance);
+  }
+  return nearest;
 }
 
-void CopyDescriptor(const Descriptor& descriptor, cv::Mat* matrix, std::size_t row) {
-  std::copy_n(reinterpret_cast<const uchar*>(descriptor.data()), sizeof(Descriptor),
-              matrix->ptr<uchar>(static_cast<int>(row)));
+NearestTwo FindNearestTwoPortable(const Descriptor& query,
+                                  const std::vector<Descriptor>& descriptors) {
+  return FindNearestTwoInline(query, descriptors);
+}
+
+#if defined(__x86_64__)
+[[gnu::target("popcnt")]] NearestTwo FindNearestTwoPopcnt(
+    const Descriptor& query, const std::vector<Descriptor>& descriptors) {
+  return FindNearestTwoInline(query, descriptors);
+}
+#endif
+
+using FindNearestTwo = NearestTwo (*)(const Descriptor&, const std::vector<Descriptor>&);
+
+/// The fastest that this processor can run; all give the same.
+FindNearestTwo ChooseFindNearestTwo() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("popcnt")) return &FindNearestTwoPopcnt;
+#endif
+  return &FindNearestTwoPortable;
 }
 
 }  // namespace
@@ -90,25 +129,20 @@ std::vector<LandmarkMatch> MatchByDescriptor(
     const std::vector<std::pair<LandmarkId, const LocalLandmark*>>& landmarks,
     const std::vector<Feature>& features, int max_hamming, double max_ratio) {
   if (landmarks.empty() || features.size() < 2) return {};
-  cv::Mat query = DescriptorMatrix(landmarks.size());
-  cv::Mat train = DescriptorMatrix(features.size());
-  for (std::size_t i = 0; i < landmarks.size(); ++i)
-    CopyDescriptor(landmarks[i].second->descriptor, &query, i);
-  for (std::size_t i = 0; i < features.size(); ++i)
-    CopyDescriptor(features[i].descriptor, &train, i);
-  std::vector<std::vector<cv::DMatch>> nearest;
-  cv::BFMatcher(cv::NORM_HAMMING).knnMatch(query, train, nearest, 2);
+  std::vector<Descriptor> descriptors;  // side by side: every landmark reads them all
+  descriptors.reserve(features.size());
+  for (const Feature& feature : features) descriptors.push_back(feature.descriptor);
+  const FindNearestTwo find_nearest_two = ChooseFindNearestTwo();
   std::map<int, LandmarkMatch> best_of_feature;
-  for (std::size_t i = 0; i < nearest.size(); ++i) {
-    const cv::DMatch& best = nearest[i][0];
-    const cv::DMatch& second = nearest[i][1];
-    const Eigen::Vector2d apart = features[static_cast<std::size_t>(best.trainIdx)].uv_px -
-                                  features[static_cast<std::size_t>(second.trainIdx)].uv_px;
+  for (const auto& [id, landmark] : landmarks) {
+    const NearestTwo nearest = find_nearest_two(landmark->descriptor, descriptors);
+    if (nearest.best_distance > max_hamming) continue;
+    const Eigen::Vector2d apart = features[static_cast<std::size_t>(nearest.best)].uv_px -
+                                  features[static_cast<std::size_t>(nearest.second)].uv_px;
     const bool is_same_corner = apart.norm() < 3;  // at a neighbouring level: no rival
-    if (best.distance > static_cast<float>(max_hamming)) continue;
-    if (!is_same_corner && best.distance > max_ratio * second.distance) continue;
-    const LandmarkMatch match{landmarks[i].first, best.trainIdx, static_cast<int>(best.distance)};
-    const auto [it, is_new] = best_of_feature.try_emplace(best.trainIdx, match);
+    if (!is_same_corner && nearest.best_distance > max_ratio * nearest.second_distance) continue;
+    const LandmarkMatch match{id, nearest.best, nearest.best_distance};
+    const auto [it, is_new] = best_of_feature.try_emplace(nearest.best, match);
     if (!is_new && match.distance < it->second.distance) it->second = match;
   }
   std::vector<LandmarkMatch> matches;
