@@ -1,7 +1,10 @@
 #include "common/features/patch.h"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 
 namespace airdos {
 namespace {
@@ -34,6 +37,42 @@ bool IsInside(const cv::Mat& image, const Eigen::Vector2d& centre, double reach)
          centre.x() + reach < image.cols - 1 && centre.y() + reach < image.rows - 1;
 }
 
+/// Samples of a square, one row of it in each column, padded to whole vectors.
+template <int kCount>
+using Square = Eigen::Array<float, (kCount + 3) / 4 * 4, kCount>;
+
+/// Bilinear, one px between samples: the same fractions everywhere, so whole rows at a time. The
+/// caller has checked the borders; the padding repeats the last pixel.
+template <int kCount>
+Square<kCount> SampleUnitSteps(const cv::Mat& image, double u, double v) {
+  constexpr std::size_t kPadded = Square<kCount>::RowsAtCompileTime;
+  const int u0 = static_cast<int>(u);
+  const int v0 = static_cast<int>(v);
+  const float fu = static_cast<float>(u - u0);
+  const float fv = static_cast<float>(v - v0);
+  Eigen::Array<float, kPadded, kCount + 1> rows;  // interpolated along u
+  for (int y = 0; y <= kCount; ++y) {
+    std::array<uchar, kPadded + 1> grey;
+    std::memcpy(grey.data(), image.ptr<uchar>(v0 + y) + u0, kCount + 1);
+    std::fill(grey.begin() + kCount + 1, grey.end(), grey[kCount]);
+    float* row = rows.col(y).data();
+    for (std::size_t x = 0; x < kPadded; ++x) {
+      const auto here = static_cast<float>(grey[x]);
+      row[x] = here + fu * (static_cast<float>(grey[x + 1]) - here);
+    }
+  }
+  return rows.template leftCols<kCount>() +
+         fv * (rows.template rightCols<kCount>() - rows.template leftCols<kCount>());
+}
+
+/// Less the mean; the padding becomes 0.
+Square<Patch::kSize> Centred(Square<Patch::kSize> samples) {
+  samples.bottomRows<1>().setZero();
+  samples -= samples.sum() / (Patch::kSize * Patch::kSize);
+  samples.bottomRows<1>().setZero();
+  return samples;
+}
+
 }  // namespace
 
 std::optional<Patch> Patch::Sample(const cv::Mat& image, const Eigen::Vector2d& centre_px,
@@ -41,40 +80,29 @@ std::optional<Patch> Patch::Sample(const cv::Mat& image, const Eigen::Vector2d& 
   constexpr int kWide = kSize + 2;
   const double reach = (kRadius + 1) * step_px;
   if (!IsInside(image, centre_px, reach)) return std::nullopt;
-  std::array<float, kWide * kWide> wide;
-  for (int y = 0; y < kWide; ++y) {
-    SampleRow(image, centre_px.x() - reach, centre_px.y() - reach + y * step_px, step_px, kWide,
-              &wide[static_cast<std::size_t>(y * kWide)]);
+  const Eigen::Vector2d first = centre_px.array() - reach;
+  Square<kWide> wide;
+  if (step_px == 1) {
+    wide = SampleUnitSteps<kWide>(image, first.x(), first.y());
+  } else {
+    wide.setZero();
+    for (int y = 0; y < kWide; ++y)
+      SampleRow(image, first.x(), first.y() + y * step_px, step_px, kWide, wide.col(y).data());
   }
   Patch patch;
-  double sum = 0;
-  double sum_gu = 0;
-  double sum_gv = 0;
-  Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
-  for (int y = 0; y < kSize; ++y) {
-    for (int x = 0; x < kSize; ++x) {
-      const auto i = static_cast<std::size_t>(y * kSize + x);
-      const auto w = static_cast<std::size_t>((y + 1) * kWide + x + 1);
-      patch.value_[i] = wide[w];
-      const float gu = 0.5f * (wide[w + 1] - wide[w - 1]);
-      const float gv = 0.5f * (wide[w + kWide] - wide[w - kWide]);
-      patch.gradient_u_[i] = gu;
-      patch.gradient_v_[i] = gv;
-      sum += patch.value_[i];
-      sum_gu += gu;
-      sum_gv += gv;
-      hessian(0, 0) += gu * gu;
-      hessian(0, 1) += gu * gv;
-      hessian(1, 1) += gv * gv;
-    }
-  }
-  const Eigen::Vector2d offset_row(sum_gu, sum_gv);
-  hessian(1, 0) = hessian(0, 1);
+  patch.gradient_u_ =
+      0.5f * (wide.block<kPaddedSize, kSize>(2, 1) - wide.block<kPaddedSize, kSize>(0, 1));
+  patch.gradient_v_ =
+      0.5f * (wide.block<kPaddedSize, kSize>(1, 2) - wide.block<kPaddedSize, kSize>(1, 0));
+  patch.gradient_u_.bottomRows<1>().setZero();
+  patch.gradient_v_.bottomRows<1>().setZero();
+  const double uv = (patch.gradient_u_ * patch.gradient_v_).sum();
+  Eigen::Matrix2d hessian;
+  hessian << patch.gradient_u_.square().sum(), uv, uv, patch.gradient_v_.square().sum();
+  const Eigen::Vector2d offset_row(patch.gradient_u_.sum(), patch.gradient_v_.sum());
   patch.hessian_ = hessian - offset_row * offset_row.transpose() / kNumSamples;
-  patch.mean_ = static_cast<float>(sum / kNumSamples);
-  double squares = 0;
-  for (const float value : patch.value_) squares += (value - patch.mean_) * (value - patch.mean_);
-  patch.deviation_ = static_cast<float>(std::sqrt(squares));
+  patch.centred_ = Centred(wide.block<kPaddedSize, kSize>(1, 1));
+  patch.deviation_ = std::sqrt(patch.centred_.square().sum());
   if (patch.deviation_ < kMinDeviation) return std::nullopt;
   return patch;
 }
@@ -85,33 +113,19 @@ std::optional<Patch::Alignment> Patch::Align(const cv::Mat& image, const Eigen::
   const Eigen::Matrix2d inverse =
       along_row ? Eigen::Matrix2d::Zero() : Eigen::Matrix2d(hessian_.inverse());
   Eigen::Vector2d centre = start_px;
-  std::array<float, kNumSamples> now;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     if (!IsInside(image, centre, kRadius)) return std::nullopt;
-    double sum = 0;
-    for (int y = 0; y < kSize; ++y) {
-      float* row = &now[static_cast<std::size_t>(y * kSize)];
-      SampleRow(image, centre.x() - kRadius, centre.y() - kRadius + y, 1.0, kSize, row);
-      for (int x = 0; x < kSize; ++x) sum += row[x];
-    }
-    const float mean = static_cast<float>(sum / kNumSamples);
-    float b_u = 0;
-    float b_v = 0;
-    float cross = 0;
-    float squares = 0;
-    for (std::size_t i = 0; i < kNumSamples; ++i) {
-      const float centred = now[i] - mean;
-      const float error = centred - (value_[i] - mean_);
-      b_u += gradient_u_[i] * error;
-      b_v += gradient_v_[i] * error;
-      cross += centred * (value_[i] - mean_);
-      squares += centred * centred;
-    }
+    const Samples now =
+        Centred(SampleUnitSteps<kSize>(image, centre.x() - kRadius, centre.y() - kRadius));
+    const Samples error = now - centred_;
+    const double b_u = (gradient_u_ * error).sum();
+    const double b_v = along_row ? 0 : (gradient_v_ * error).sum();
     const Eigen::Vector2d step = along_row ? Eigen::Vector2d(b_u / hessian_(0, 0), 0)
                                            : Eigen::Vector2d(inverse * Eigen::Vector2d(b_u, b_v));
     if (step.norm() < kConverged_px) {
+      const float squares = now.square().sum();
       if (!(squares > 0)) return std::nullopt;
-      return Alignment{centre, cross / (deviation_ * std::sqrt(squares))};
+      return Alignment{centre, (now * centred_).sum() / (deviation_ * std::sqrt(squares))};
     }
     centre -= step;
     if (!((centre - start_px).norm() <= max_shift_px)) return std::nullopt;

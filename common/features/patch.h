@@ -2,7 +2,6 @@
 #define AIRDOS_COMMON_FEATURES_PATCH_H_
 
 #include <Eigen/Core>
-#include <array>
 #include <opencv2/core.hpp>
 #include <optional>
 
@@ -32,13 +31,15 @@ class Patch {
 
  private:
   static constexpr int kNumSamples = kSize * kSize;
+  static constexpr int kPaddedSize = kSize + 1;  // a multiple of four: rows of whole vectors
+  /// Column by column of the array a row of the patch, the last element 0.
+  using Samples = Eigen::Array<float, kPaddedSize, kSize>;
 
-  std::array<float, kNumSamples> value_;
-  std::array<float, kNumSamples> gradient_u_;  // per px of the image in which it will be searched
-  std::array<float, kNumSamples> gradient_v_;
+  Samples centred_;     // grey values less their mean
+  Samples gradient_u_;  // per px of the image in which it will be searched
+  Samples gradient_v_;
   Eigen::Matrix2d hessian_;  // of translation, brightness offset eliminated
-  float mean_ = 0;
-  float deviation_ = 0;  // square root of the sum of squared differences from the mean
+  float deviation_ = 0;      // square root of the sum of squared differences from the mean
 };
 
 }  // namespace airdos
