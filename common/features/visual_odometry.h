@@ -79,9 +79,9 @@ struct OdometryFrame {
 /// Stereo odometry against a local map: the constant-velocity prediction and a descriptor search
 /// over the whole image are two hypotheses for the pose; where they differ each is measured, every
 /// landmark found again to a fraction of a pixel by its own patch, and the one is kept that more
-/// trusted landmarks agree with. What moves is not trusted: see LandmarkJudge. It never
-/// resets: without support it coasts on the prediction and goes on matching the whole map. W is the
-/// first left camera.
+/// trusted landmarks agree with. Where a clear majority agrees with the first the second is spared.
+/// What moves is not trusted: see LandmarkJudge. It never resets: without support it coasts on the
+/// prediction and goes on matching the whole map. W is the first left camera.
 ///
 /// Where static landmarks are few, people help: each moves on with the velocity it had, and where
 /// the camera sees them says where the camera is, as far as they can be relied on.
