@@ -25,10 +25,14 @@ Patch MakePatch(const cv::Mat& image, int u, int v, int half) {
   std::int64_t sum_squares = 0;
   for (int y = v - half; y <= v + half; ++y) {
     const unsigned char* row = image.ptr<unsigned char>(y) + (u - half);
+    int row_sum = 0;  // of 32 bits, so that whole vectors are added at a time
+    int row_squares = 0;
     for (int x = 0; x <= 2 * half; ++x) {
-      sum += row[x];
-      sum_squares += row[x] * row[x];
+      row_sum += row[x];
+      row_squares += row[x] * row[x];
     }
+    sum += row_sum;
+    sum_squares += row_squares;
   }
   const double area = std::pow(2 * half + 1, 2);
   const double mean = static_cast<double>(sum) / area;
@@ -41,7 +45,9 @@ double Correlation(const cv::Mat& a_image, const Patch& a, const cv::Mat& b_imag
   for (int y = -a.half; y <= a.half; ++y) {
     const unsigned char* a_row = a_image.ptr<unsigned char>(a.v + y) + (a.u - a.half);
     const unsigned char* b_row = b_image.ptr<unsigned char>(b.v + y) + (b.u - a.half);
-    for (int x = 0; x <= 2 * a.half; ++x) sum += a_row[x] * b_row[x];
+    int row_sum = 0;
+    for (int x = 0; x <= 2 * a.half; ++x) row_sum += a_row[x] * b_row[x];
+    sum += row_sum;
   }
   const double area = std::pow(2 * a.half + 1, 2);
   const double norm = a.norm * b.norm;
