@@ -5,14 +5,14 @@
 namespace airdos {
 
 FeatureGrid::FeatureGrid(const std::vector<Feature>& features, int width_px, int height_px)
-    : features_(features),
-      num_columns_(static_cast<int>(width_px / kCellSize_px) + 1),
+    : num_columns_(static_cast<int>(width_px / kCellSize_px) + 1),
       num_rows_(static_cast<int>(height_px / kCellSize_px) + 1),
       cells_(static_cast<std::size_t>(num_columns_ * num_rows_)) {
   for (std::size_t i = 0; i < features.size(); ++i) {
     const int column = Clamp(features[i].uv_px.x(), num_columns_);
     const int row = Clamp(features[i].uv_px.y(), num_rows_);
-    cells_[static_cast<std::size_t>(row * num_columns_ + column)].push_back(static_cast<int>(i));
+    cells_[static_cast<std::size_t>(row * num_columns_ + column)].push_back(
+        {features[i].uv_px, static_cast<int>(i), features[i].level});
   }
 }
 

@@ -8,24 +8,31 @@
 
 namespace airdos {
 
-/// Finds the features around a point of the image. Keeps a reference to the features.
+/// Finds the features around a point of the image.
 class FeatureGrid {
  public:
   FeatureGrid(const std::vector<Feature>& features, int width_px, int height_px);
 
-  /// Calls `visit(index)` for each feature within the square of half width `radius_px`, in an order
-  /// that depends only on the features.
+  /// Pyramid levels, both ends included.
+  struct Levels {
+    int first = 0;
+    int last = 0;
+  };
+
+  /// Calls `visit(index)` for each feature of the levels within the square of half width
+  /// `radius_px`, in an order that depends only on the features.
   template <class Visit>
-  void ForEachNear(const Eigen::Vector2d& uv_px, double radius_px, Visit visit) const {
+  void ForEachNear(const Eigen::Vector2d& uv_px, double radius_px, const Levels& levels,
+                   Visit visit) const {
     const int column_begin = Clamp(uv_px.x() - radius_px, num_columns_);
     const int column_end = Clamp(uv_px.x() + radius_px, num_columns_);
     const int row_begin = Clamp(uv_px.y() - radius_px, num_rows_);
     const int row_end = Clamp(uv_px.y() + radius_px, num_rows_);
     for (int row = row_begin; row <= row_end; ++row) {
       for (int column = column_begin; column <= column_end; ++column) {
-        for (const int index : cells_[static_cast<std::size_t>(row * num_columns_ + column)]) {
-          const Eigen::Vector2d offset = features_[static_cast<std::size_t>(index)].uv_px - uv_px;
-          if (offset.cwiseAbs().maxCoeff() <= radius_px) visit(index);
+        for (const Entry& entry : cells_[static_cast<std::size_t>(row * num_columns_ + column)]) {
+          if (entry.level < levels.first || entry.level > levels.last) continue;
+          if ((entry.uv_px - uv_px).cwiseAbs().maxCoeff() <= radius_px) visit(entry.index);
         }
       }
     }
@@ -35,10 +42,16 @@ class FeatureGrid {
   static constexpr double kCellSize_px = 16;
   static int Clamp(double coordinate_px, int count);
 
-  const std::vector<Feature>& features_;
+  /// What a search looks at, side by side in memory.
+  struct Entry {
+    Eigen::Vector2d uv_px;
+    int index;
+    int level;
+  };
+
   int num_columns_;
   int num_rows_;
-  std::vector<std::vector<int>> cells_;
+  std::vector<std::vector<Entry>> cells_;
 };
 
 }  // namespace airdos

@@ -22,14 +22,16 @@ struct Residual {
   bool is_in_front = false;
 };
 
-/// `J` is the derivative of the residual by p_W.
-void Whiten(const Eigen::Matrix3d& J, const PoseObservation& observation, Residual* residual) {
+/// `J_C` is the derivative of the residual by p_C.
+void Whiten(const Eigen::Matrix3d& J_C, const Eigen::Quaterniond& q_C_W,
+            const PoseObservation& observation, Residual* residual) {
   const double variance_px2 = observation.sigma_px * observation.sigma_px;
   if (observation.covariance_W.isZero(0)) {
     residual->value /= observation.sigma_px;
     residual->jacobian /= observation.sigma_px;
     return;
   }
+  const Eigen::Matrix3d J = J_C * q_C_W.toRotationMatrix();  // by p_W
   Eigen::Matrix3d S = J * observation.covariance_W * J.transpose();
   if (!observation.has_right) {
     S.row(2).setZero();
@@ -58,7 +60,7 @@ Residual Evaluate(const StereoCamera& camera, const Se3& T_C_W,
     residual.value.z() = 0;
     residual.jacobian.row(2).setZero();
   }
-  Whiten(J * T_C_W.rotation.toRotationMatrix(), observation, &residual);
+  Whiten(J, T_C_W.rotation, observation, &residual);
   return residual;
 }
 

@@ -21,9 +21,10 @@ std::vector<Feature> RandomFeatures(int count, std::uint32_t seed) {
   return features;
 }
 
-std::vector<int> Near(const FeatureGrid& grid, const Eigen::Vector2d& uv_px, double radius_px) {
+std::vector<int> Near(const FeatureGrid& grid, const Eigen::Vector2d& uv_px, double radius_px,
+                      const FeatureGrid::Levels& levels = {0, 7}) {
   std::vector<int> indices;
-  grid.ForEachNear(uv_px, radius_px, [&](int index) { indices.push_back(index); });
+  grid.ForEachNear(uv_px, radius_px, levels, [&](int index) { indices.push_back(index); });
   return indices;
 }
 
@@ -62,6 +63,14 @@ TEST(FeatureGrid, FeaturesBeyondTheImageAreFound) {
   const FeatureGrid grid(features, kWidth_px, kHeight_px);
   EXPECT_EQ(Near(grid, {-4, -6}, 2), std::vector<int>{0});
   EXPECT_EQ(Near(grid, {kWidth_px + 39, kHeight_px + 41}, 2), std::vector<int>{1});
+}
+
+TEST(FeatureGrid, FindsOnlyWhatIsOfTheLevels) {
+  std::vector<Feature> features(4);
+  for (int level = 0; level < 4; ++level) features[static_cast<std::size_t>(level)].level = level;
+  const FeatureGrid grid(features, kWidth_px, kHeight_px);
+  EXPECT_EQ(Near(grid, {0, 0}, 1, {1, 2}), (std::vector<int>{1, 2}));
+  EXPECT_EQ(Near(grid, {0, 0}, 1, {-1, 0}), std::vector<int>{0});
 }
 
 TEST(FeatureGrid, NothingInAnEmptyGrid) {
