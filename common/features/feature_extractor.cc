@@ -62,6 +62,51 @@ bool IsStronger(const cv::KeyPoint& a, const cv::KeyPoint& b) {
   return a.pt.x < b.pt.x;
 }
 
+bool IsMasked(const ImagePyramid& pyramid, int level, const cv::Mat& mask,
+              const cv::KeyPoint& corner) {
+  if (mask.empty()) return false;
+  const int u = std::min(cvRound(pyramid.FromLevel(corner.pt.x, level)), mask.cols - 1);
+  const int v = std::min(cvRound(pyramid.FromLevel(corner.pt.y, level)), mask.rows - 1);
+  return mask.at<uchar>(v, u) != 0;
+}
+
+/// The strongest corners of each cell, strongest first, in one piece of memory.
+class CellSelection {
+ public:
+  CellSelection(int num_cells, int max_per_cell)
+      : max_per_cell_(static_cast<std::size_t>(max_per_cell)),
+        counts_(static_cast<std::size_t>(num_cells)),
+        corners_(counts_.size() * max_per_cell_) {}
+
+  void Add(int cell, const cv::KeyPoint& corner) {
+    std::size_t& count = counts_[static_cast<std::size_t>(cell)];
+    cv::KeyPoint* const first = &corners_[static_cast<std::size_t>(cell) * max_per_cell_];
+    if (count == max_per_cell_) {
+      if (!IsStronger(corner, first[count - 1])) return;
+      --count;
+    }
+    cv::KeyPoint* place = first + count;
+    for (; place != first && IsStronger(corner, place[-1]); --place) *place = place[-1];
+    *place = corner;
+    ++count;
+  }
+
+  /// Cell by cell.
+  std::vector<cv::KeyPoint> All() const {
+    std::vector<cv::KeyPoint> all;
+    for (std::size_t cell = 0; cell < counts_.size(); ++cell) {
+      const cv::KeyPoint* const first = &corners_[cell * max_per_cell_];
+      all.insert(all.end(), first, first + counts_[cell]);
+    }
+    return all;
+  }
+
+ private:
+  std::size_t max_per_cell_;
+  std::vector<std::size_t> counts_;
+  std::vector<cv::KeyPoint> corners_;
+};
+
 }  // namespace
 
 FeatureExtractor::FeatureExtractor(const FeatureExtractorOptions& options)
@@ -81,33 +126,20 @@ std::vector<cv::KeyPoint> FeatureExtractor::DetectLevel(const ImagePyramid& pyra
 
   const int num_columns = (image.cols + options_.cell_size_px - 1) / options_.cell_size_px;
   const int num_rows = (image.rows + options_.cell_size_px - 1) / options_.cell_size_px;
-  std::vector<std::vector<cv::KeyPoint>> cells(static_cast<std::size_t>(num_columns * num_rows));
+  CellSelection selection(num_columns * num_rows, options_.max_features_per_cell);
   for (cv::KeyPoint& corner : corners) {
     corner.pt += cv::Point2f(kBorder_px, kBorder_px);
-    const int u =
-        std::min(cvRound(pyramid.FromLevel(corner.pt.x, level)), pyramid.level(0).cols - 1);
-    const int v =
-        std::min(cvRound(pyramid.FromLevel(corner.pt.y, level)), pyramid.level(0).rows - 1);
-    if (!mask.empty() && mask.at<uchar>(v, u) != 0) {
+    if (IsMasked(pyramid, level, mask, corner)) {
       ++*num_masked;
       continue;
     }
     const int cell = static_cast<int>(corner.pt.y) / options_.cell_size_px * num_columns +
                      static_cast<int>(corner.pt.x) / options_.cell_size_px;
-    cells[static_cast<std::size_t>(cell)].push_back(corner);
+    selection.Add(cell, corner);
   }
-
-  std::vector<cv::KeyPoint> selected;
-  for (std::vector<cv::KeyPoint>& cell : cells) {
-    const std::size_t count =
-        std::min(cell.size(), static_cast<std::size_t>(options_.max_features_per_cell));
-    std::partial_sort(cell.begin(), cell.begin() + static_cast<std::ptrdiff_t>(count), cell.end(),
-                      IsStronger);
-    for (std::size_t i = 0; i < count; ++i) {
-      cell[i].angle =
-          IntensityCentroidAngle_deg(image, cvRound(cell[i].pt.x), cvRound(cell[i].pt.y));
-      selected.push_back(cell[i]);
-    }
+  std::vector<cv::KeyPoint> selected = selection.All();
+  for (cv::KeyPoint& corner : selected) {
+    corner.angle = IntensityCentroidAngle_deg(image, cvRound(corner.pt.x), cvRound(corner.pt.y));
   }
   return selected;
 }
