@@ -107,9 +107,8 @@ VisualOdometry::Tracking VisualOdometry::Track(const View& view, const PosePrior
   const ProjectionSearch wide{options_.wide_radius_px, options_.wide_max_hamming, 0.9};
   const ProjectionSearch narrow{8, options_.narrow_max_hamming, 0.9};
   Tracking best = Measure(view, TrackFrom(view, prior.T_W_C, wide, prior), prior);
-  // Of a frame's landmarks no other pose can have more, once more than half agree with this one.
-  constexpr double kClearMajority = 0.5;
-  if (best.score > kClearMajority * options_.max_observations) return best;
+  // With so many that agree no other pose has as many. A frame of few landmarks gets both tries.
+  if (best.score >= options_.rich_observations) return best;
   const std::optional<Se3> relocated = Relocate(view);
   if (!relocated) return best;
   Hypothesis other = TrackFrom(view, *relocated, narrow, std::nullopt);

@@ -24,8 +24,10 @@ namespace airdos {
 struct VisualOdometryOptions {
   FeatureExtractorOptions extractor;
   FeatureStereoMatcherOptions stereo;
-  /// Where the last frame held this many static landmarks there is a choice, and only better stereo
-  /// matches are taken: with doubtful ones paths came out half a percent too long (KITTI).
+  /// So many static landmarks are plenty (about half of max_observations). Where the last frame
+  /// held them there is a choice, and only better stereo matches are taken: with doubtful ones
+  /// paths came out half a percent too long (KITTI). Where they agree with one pose no other is
+  /// tried.
   int rich_observations = 150;
   double rich_min_correlation = 0.95;
   LocalMapOptions map;
@@ -79,8 +81,8 @@ struct OdometryFrame {
 /// Stereo odometry against a local map: the constant-velocity prediction and a descriptor search
 /// over the whole image are two hypotheses for the pose; where they differ each is measured, every
 /// landmark found again to a fraction of a pixel by its own patch, and the one is kept that more
-/// trusted landmarks agree with. Where a clear majority agrees with the first the second is spared.
-/// What moves is not trusted: see LandmarkJudge. It never resets: without support it coasts on the
+/// trusted landmarks agree with. Where very many agree with the first the second is spared. What
+/// moves is not trusted: see LandmarkJudge. It never resets: without support it coasts on the
 /// prediction and goes on matching the whole map. W is the first left camera.
 ///
 /// Where static landmarks are few, people help: each moves on with the velocity it had, and where
