@@ -68,7 +68,7 @@ Chart ProcessChart(const std::vector<ChainSpeed>& chains) {
   }
   for (auto& [name, line] : series) {
     line.name = name;
-    line.color_bgr = kColors[chart.series.size() % kColors.size()];
+    line.color_bgr = kColors[(chart.series.size() / 2) % kColors.size()];  // dots have the same
     ChartSeries dots = line;
     dots.name.clear();
     dots.is_dots = true;

@@ -42,6 +42,27 @@ void LocalMap::Apply(const MapCorrection& correction) {
   }
 }
 
+// Each keeps the whole image of its reference frame in memory.
+void LocalMap::CullReferenceFrames() {
+  std::map<FrameId, FrameId> last_seen;  // by reference frame
+  for (const auto& [id, landmark] : landmarks_) {
+    FrameId& newest =
+        last_seen.try_emplace(landmark.reference_frame, landmark.last_seen).first->second;
+    if (newest < landmark.last_seen) newest = landmark.last_seen;
+  }
+  if (last_seen.size() <= kMaxReferenceFrames) return;
+  std::vector<std::pair<std::int64_t, std::int64_t>> by_age;  // last seen, reference frame
+  for (const auto& [reference, seen] : last_seen) by_age.emplace_back(seen.value, reference.value);
+  std::sort(by_age.begin(), by_age.end());
+  const auto first_kept = by_age[last_seen.size() - kMaxReferenceFrames];
+  for (auto it = landmarks_.begin(); it != landmarks_.end();) {
+    const FrameId reference = it->second.reference_frame;
+    const bool is_surplus =
+        std::make_pair(last_seen.at(reference).value, reference.value) < first_kept;
+    it = is_surplus ? landmarks_.erase(it) : std::next(it);
+  }
+}
+
 void LocalMap::Cull(FrameId now) {
   constexpr int kMinExpected = 10;
   for (auto it = landmarks_.begin(); it != landmarks_.end();) {
@@ -52,6 +73,7 @@ void LocalMap::Cull(FrameId now) {
                               landmark.num_seen < options_.min_found_ratio * landmark.num_expected;
     it = is_unconfirmed || is_not_found ? landmarks_.erase(it) : std::next(it);
   }
+  CullReferenceFrames();
   const auto limit = static_cast<std::size_t>(options_.max_landmarks);
   if (landmarks_.size() <= limit) return;
   std::vector<std::pair<std::int64_t, std::int64_t>> by_age;  // last seen, id

@@ -70,10 +70,16 @@ class LocalMap {
   /// they were created in.
   void Apply(const MapCorrection& correction);
 
-  /// Drops what was not found again, and the longest unseen beyond the limit.
+  /// Drops what was not found again, and the longest unseen beyond the limit; also all landmarks of
+  /// the reference frames that were not seen for longest, beyond kMaxReferenceFrames of them.
   void Cull(FrameId now);
 
+  /// Landmarks hold on to the images of so many frames at most: the largest part of the memory.
+  static constexpr std::size_t kMaxReferenceFrames = 250;
+
  private:
+  void CullReferenceFrames();
+
   static constexpr int kMaxPoses = 64;
 
   LocalMapOptions options_;

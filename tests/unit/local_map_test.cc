@@ -157,5 +157,24 @@ TEST(LocalMapCull, BeyondTheLimitTheLongestUnseenGo) {
   EXPECT_EQ(map.landmarks().count(LandmarkId{3}), 0u);
 }
 
+TEST(LocalMapCull, OnlySoManyReferenceImagesAreHeld) {
+  constexpr std::int64_t kSurplus = 50;
+  const auto num_frames = static_cast<std::int64_t>(LocalMap::kMaxReferenceFrames) + kSurplus;
+  LocalMap map((LocalMapOptions()));
+  for (std::int64_t frame = 1; frame <= num_frames; ++frame) {
+    LocalLandmark landmark;
+    landmark.reference_frame = landmark.last_seen = FrameId{frame};
+    landmark.num_seen = 2;
+    map.Add(landmark);  // its id is the frame's number
+  }
+  map.landmarks().at(LandmarkId{1}).last_seen = FrameId{num_frames};
+  map.Cull(FrameId{num_frames});
+  EXPECT_EQ(map.landmarks().size(), LocalMap::kMaxReferenceFrames);
+  EXPECT_EQ(map.landmarks().count(LandmarkId{1}), 1u);
+  EXPECT_EQ(map.landmarks().count(LandmarkId{2}), 0u);
+  EXPECT_EQ(map.landmarks().count(LandmarkId{kSurplus + 1}), 0u);
+  EXPECT_EQ(map.landmarks().count(LandmarkId{kSurplus + 2}), 1u);
+}
+
 }  // namespace
 }  // namespace airdos
