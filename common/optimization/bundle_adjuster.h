@@ -7,6 +7,9 @@
 
 namespace airdos {
 
+/// Who minimizes: our own solver, made for these graphs (structured_minimizer.h), or Ceres.
+enum class BundleSolver { kStructured, kCeres };
+
 struct BundleOptions {
   bool use_people = true;
   bool compute_covariance = true;  ///< of the newest frame
@@ -14,7 +17,9 @@ struct BundleOptions {
   bool use_motion = true;
   MotionForm motion_form = MotionForm::kVelocity;  ///< where a person's own is not given
 
-  // Solver. Only iterations are limited, never time: the result must not depend on the machine.
+  // Solver. Both take the same steps but for rounding. Only iterations are limited, never time: the
+  // result must not depend on the machine.
+  BundleSolver solver = BundleSolver::kStructured;
   int max_iterations = 6;                    ///< of the first pass
   int max_iterations_after_elimination = 4;  ///< of the pass after elimination; 0: no elimination
   double function_tolerance = 1e-5;          ///< relative change of cost that ends a pass

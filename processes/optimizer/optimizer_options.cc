@@ -18,6 +18,8 @@ void ReadMap(ConfigReader* config, WindowMapOptions* map) {
 }
 
 void ReadSolver(ConfigReader* config, BundleOptions* bundle) {
+  bundle->solver =
+      static_cast<BundleSolver>(config->ReadChoice("solver.method", {"structured", "ceres"}));
   config->Read("solver.max_iterations", &bundle->max_iterations, 1, 1000);
   config->Read("solver.max_iterations_after_elimination", &bundle->max_iterations_after_elimination,
                0, 1000);

@@ -1,0 +1,167 @@
+#include "common/optimization/elimination_order.h"
+
+#include <bitset>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "common/util/check.h"
+
+namespace airdos {
+namespace {
+
+using Block = FactorGraph::Block;
+using Kind = FactorGraph::Kind;
+
+constexpr int kSweptSlices = 4;  // a piece of so many is not parted again
+constexpr int kMaxInner = 64;
+
+struct Edge {
+  int a, b;  // blocks
+};
+
+/// One track of the graph.
+struct Track {
+  std::map<int, std::vector<int>> slices;  // blocks, in order of time
+  std::vector<int> whole;
+  std::vector<Edge> edges;  // between blocks of slices
+};
+
+class Orderer {
+ public:
+  explicit Orderer(const FactorGraph& graph)
+      : graph_(graph),
+        is_used_(graph.blocks().size(), false),
+        has_other_slice_(graph.blocks().size(), false),
+        neighbours_(graph.blocks().size()),
+        place_(graph.blocks().size(), 0) {}
+
+  EliminationOrder Run() {
+    ReadFactors();
+    std::vector<int> poses;
+    std::vector<Track> tracks;
+    for (int i = 0; i < static_cast<int>(graph_.blocks().size()); ++i) {
+      const Block& block = graph_.block(i);
+      if (!is_used_[i] || block.is_constant) continue;
+      if (block.kind == Kind::kPose) {
+        poses.push_back(i);
+      } else if (block.kind == Kind::kLandmark) {
+        BeginGroup();
+        order_.fronts.push_back({i});
+      } else {
+        AIRDOS_CHECK(block.track >= 0);
+        if (block.track >= static_cast<int>(tracks.size())) tracks.resize(block.track + 1);
+        Track& track = tracks[block.track];
+        (block.slice == Block::kWholeTrack ? track.whole : track.slices[block.slice]).push_back(i);
+      }
+    }
+    for (const Track& track : tracks) AddTrack(track);
+    BeginGroup();
+    if (!poses.empty()) order_.fronts.push_back(poses);
+    BeginGroup();
+    return std::move(order_);
+  }
+
+ private:
+  void BeginGroup() { order_.group_begins.push_back(static_cast<int>(order_.fronts.size())); }
+
+  void ReadFactors() {
+    for (const FactorGraph::Factor& factor : graph_.factors()) {
+      if (factor.is_removed) continue;
+      for (int i = 0; i < factor.num_blocks; ++i) {
+        is_used_[factor.blocks[i]] = true;
+        for (int j = 0; j < i; ++j) ReadPair(factor.blocks[i], factor.blocks[j]);
+      }
+    }
+  }
+
+  void ReadPair(int a, int b) {
+    const Block& block_a = graph_.block(a);
+    const Block& block_b = graph_.block(b);
+    for (const Block* block : {&block_a, &block_b}) {
+      if (block->kind != Kind::kTrack || block->slice == Block::kWholeTrack) return;
+    }
+    if (block_a.track != block_b.track || block_a.slice != block_b.slice) {
+      has_other_slice_[a] = has_other_slice_[b] = true;
+    } else {
+      neighbours_[a].push_back(b);
+      neighbours_[b].push_back(a);
+    }
+  }
+
+  void AddTrack(const Track& track) {
+    BeginGroup();
+    std::vector<std::vector<int>> chain;
+    for (const auto& [slice, blocks] : track.slices) {
+      EliminateInner(blocks);
+      std::vector<int> rest;
+      for (const int block : blocks) {
+        if (has_other_slice_[block]) rest.push_back(block);
+      }
+      if (!rest.empty()) chain.push_back(std::move(rest));
+    }
+    Dissect(chain, 0, static_cast<int>(chain.size()));
+    if (!track.whole.empty()) order_.fronts.push_back(track.whole);
+  }
+
+  /// Those of a slice that have no partner in other slices, least neighbours first.
+  void EliminateInner(const std::vector<int>& blocks) {
+    std::vector<std::uint64_t> adjacent(blocks.size(), 0);  // bits: places in `blocks`
+    std::uint64_t inner = 0;
+    for (std::size_t i = 0; i < blocks.size(); ++i) place_[blocks[i]] = i;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      if (has_other_slice_[blocks[i]]) continue;
+      if (blocks.size() > kMaxInner) {  // unlike anything we make; any order is right
+        order_.fronts.push_back({blocks[i]});
+        continue;
+      }
+      inner |= std::uint64_t{1} << i;
+    }
+    for (std::size_t i = 0; inner != 0 && i < blocks.size(); ++i) {
+      for (const int other : neighbours_[blocks[i]]) {
+        adjacent[i] |= std::uint64_t{1} << place_[other];
+      }
+    }
+    while (inner != 0) {
+      std::size_t best = 0;
+      std::size_t least = kMaxInner + 1;
+      for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const std::size_t num = std::bitset<kMaxInner>(adjacent[i]).count();
+        if ((inner >> i & 1) == 0 || num >= least) continue;
+        best = i;
+        least = num;
+      }
+      order_.fronts.push_back({blocks[best]});
+      const std::uint64_t bit = std::uint64_t{1} << best;
+      inner &= ~bit;
+      for (std::size_t i = 0; i < blocks.size(); ++i) {
+        if ((adjacent[best] >> i & 1) == 0) continue;
+        adjacent[i] = (adjacent[i] | adjacent[best]) & ~(bit | std::uint64_t{1} << i);
+      }
+    }
+  }
+
+  void Dissect(const std::vector<std::vector<int>>& chain, int begin, int end) {
+    if (end - begin <= kSweptSlices) {
+      for (int i = begin; i < end; ++i) order_.fronts.push_back(chain[i]);
+      return;
+    }
+    const int middle = (begin + end) / 2;
+    Dissect(chain, begin, middle);
+    Dissect(chain, middle + 1, end);
+    order_.fronts.push_back(chain[middle]);
+  }
+
+  const FactorGraph& graph_;
+  std::vector<char> is_used_;
+  std::vector<char> has_other_slice_;
+  std::vector<std::vector<int>> neighbours_;  // within the slice
+  std::vector<std::size_t> place_;            // in its slice
+  EliminationOrder order_;
+};
+
+}  // namespace
+
+EliminationOrder OrderForElimination(const FactorGraph& graph) { return Orderer(graph).Run(); }
+
+}  // namespace airdos

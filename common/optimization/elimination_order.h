@@ -1,0 +1,35 @@
+#ifndef AIRDOS_COMMON_OPTIMIZATION_ELIMINATION_ORDER_H_
+#define AIRDOS_COMMON_OPTIMIZATION_ELIMINATION_ORDER_H_
+
+#include <vector>
+
+#include "common/optimization/factor_graph.h"
+
+namespace airdos {
+
+/// In which order the unknowns of a graph are eliminated. A front is a set of unknowns that are
+/// eliminated together.
+struct EliminationOrder {
+  /// Blocks of the graph that are free and have factors, by front.
+  std::vector<std::vector<int>> fronts;
+  /// Fronts of one landmark or one track: [begins[i], begins[i + 1]). The last group are the poses.
+  std::vector<int> group_begins;
+};
+
+/// Landmarks, then track by track, then the poses in one front. Within a track:
+///
+///  1. slice by slice what has no partner in another slice (the joints of the limbs), each alone,
+///     the one with the fewest neighbours first: from the leaves to the root;
+///  2. what remains of the slices (torso and velocity; all points of a rigid object) by nested
+///     dissection in time: the slice in the middle parts the track into two that do not know of
+///     each other, and is eliminated after both; pieces of few slices are swept from their start.
+///     Against one sweep from end to end this halves the cost, as every piece only carries the
+///     poses of its own frames;
+///  3. what belongs to the whole track (lengths, a motion over the track).
+///
+/// Any order is right: what couples unknowns in a way not foreseen here only costs more.
+EliminationOrder OrderForElimination(const FactorGraph& graph);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_OPTIMIZATION_ELIMINATION_ORDER_H_

@@ -1,0 +1,148 @@
+#include "common/optimization/graph_linearizer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/util/check.h"
+
+namespace airdos {
+namespace {
+
+constexpr int kConstant = -1;
+constexpr double kInvalid = std::numeric_limits<double>::quiet_NaN();
+
+struct Weighted {
+  double cost = 0;    // loss(|r|^2)
+  double weight = 1;  // sqrt(loss'), of the residual
+};
+
+Weighted ApplyLoss(const ceres::LossFunction* loss, const double* residuals, int num) {
+  double squared = 0;
+  for (int i = 0; i < num; ++i) squared += residuals[i] * residuals[i];
+  if (loss == nullptr) return {squared, 1};
+  std::array<double, 3> rho = {};
+  loss->Evaluate(squared, rho.data());
+  AIRDOS_CHECK(!(rho[2] > 0));
+  return {rho[0], std::sqrt(rho[1])};
+}
+
+}  // namespace
+
+GraphLinearizer::GraphLinearizer(const FactorGraph& graph, const std::vector<int>& order,
+                                 BlockMatrix* H)
+    : graph_(graph), H_(H) {
+  std::vector<int> place_of(graph.blocks().size(), kConstant);
+  for (std::size_t i = 0; i < order.size(); ++i) place_of[order[i]] = static_cast<int>(i);
+  terms_.reserve(graph.factors().size());
+  for (int i = 0; i < static_cast<int>(graph.factors().size()); ++i) {
+    const FactorGraph::Factor& factor = graph.factors()[i];
+    if (!factor.is_removed && !graph.IsFixed(factor)) terms_.push_back(MakeTerm(i, place_of));
+  }
+}
+
+GraphLinearizer::Term GraphLinearizer::MakeTerm(int index, const std::vector<int>& place_of) {
+  const FactorGraph::Factor& factor = graph_.factors()[index];
+  Term term;
+  term.cost = factor.cost.get();
+  term.loss = factor.loss;
+  term.factor = index;
+  term.num_residuals = factor.cost->num_residuals();
+  term.num_blocks = factor.num_blocks;
+  AIRDOS_CHECK(term.num_residuals <= FactorGraph::kMaxResiduals);
+  std::array<int, kMaxBlocks> places = {};
+  for (int i = 0; i < factor.num_blocks; ++i) {
+    const FactorGraph::Block& block = graph_.block(factor.blocks[i]);
+    places[i] = block.is_constant ? kConstant : place_of[factor.blocks[i]];
+    AIRDOS_CHECK(block.is_constant || places[i] != kConstant);
+    term.values[i] = block.values;
+    term.sizes[i] = block.size;
+    term.dims[i] = block.tangent_size();
+    term.columns[i] = block.is_constant ? kConstant : H_->begin(places[i]);
+  }
+  for (int i = 0; i < factor.num_blocks; ++i) {
+    for (int j = 0; j < factor.num_blocks; ++j) {
+      AIRDOS_CHECK(i == j || factor.blocks[i] != factor.blocks[j]);
+      const bool is_upper = places[i] < places[j] || i == j;
+      if (places[i] == kConstant || !is_upper) continue;
+      term.products[term.num_products++] = {
+          static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j),
+          H_->Offset(places[i], places[j]),
+          FindAddProduct(term.num_residuals, term.dims[i], term.dims[j])};
+    }
+  }
+  return term;
+}
+
+void GraphLinearizer::DropRemovedFactors() {
+  const auto is_removed = [this](const Term& term) {
+    return graph_.factors()[term.factor].is_removed;
+  };
+  terms_.erase(std::remove_if(terms_.begin(), terms_.end(), is_removed), terms_.end());
+}
+
+double GraphLinearizer::FixedCost() const {
+  double cost = 0;
+  for (std::size_t i = 0; i < graph_.factors().size(); ++i) {
+    const FactorGraph::Factor& factor = graph_.factors()[i];
+    if (factor.is_removed || !graph_.IsFixed(factor)) continue;
+    const double error = std::sqrt(graph_.SquaredError(static_cast<int>(i)));
+    cost += ApplyLoss(factor.loss, &error, 1).cost;
+  }
+  return 0.5 * cost;
+}
+
+double GraphLinearizer::Cost() const {
+  double cost = 0;
+  std::array<double, FactorGraph::kMaxResiduals> residuals = {};
+  for (const Term& term : terms_) {
+    if (!term.cost->Evaluate(term.values.data(), residuals.data(), nullptr)) return kInvalid;
+    cost += ApplyLoss(term.loss, residuals.data(), term.num_residuals).cost;
+  }
+  return 0.5 * cost;
+}
+
+double GraphLinearizer::Linearize(Eigen::VectorXd* gradient) {
+  constexpr int kMaxJacobian = FactorGraph::kMaxResiduals * kPoseBlockSize;
+  H_->SetZero();
+  gradient->setZero();
+  double* const H = H_->values();
+  double cost = 0;
+  std::array<double, FactorGraph::kMaxResiduals> residuals = {};
+  std::array<std::array<double, kMaxJacobian>, kMaxBlocks> J = {};
+  for (const Term& term : terms_) {
+    std::array<double*, kMaxBlocks> jacobians = {};
+    for (int i = 0; i < term.num_blocks; ++i) {
+      if (term.columns[i] != kConstant) jacobians[i] = J[i].data();
+    }
+    if (!term.cost->Evaluate(term.values.data(), residuals.data(), jacobians.data())) {
+      return kInvalid;
+    }
+    const Weighted weighted = ApplyLoss(term.loss, residuals.data(), term.num_residuals);
+    cost += weighted.cost;
+    for (int i = 0; i < term.num_residuals; ++i) residuals[i] *= weighted.weight;
+    for (int i = 0; i < term.num_blocks; ++i) {
+      if (term.columns[i] == kConstant) continue;
+      const int size = term.sizes[i];
+      if (weighted.weight != 1) {
+        for (int k = 0; k < term.num_residuals * size; ++k) J[i][k] *= weighted.weight;
+      }
+      double* const g = gradient->data() + term.columns[i];
+      for (int col = 0; col < term.dims[i]; ++col) {
+        double sum = g[col];
+        for (int row = 0; row < term.num_residuals; ++row) {
+          sum += J[i][row * size + col] * residuals[row];
+        }
+        g[col] = sum;
+      }
+    }
+    for (int p = 0; p < term.num_products; ++p) {
+      const Product& product = term.products[p];
+      product.add(J[product.first].data(), term.sizes[product.first], J[product.second].data(),
+                  term.sizes[product.second], H + product.target);
+    }
+  }
+  return 0.5 * cost;
+}
+
+}  // namespace airdos

@@ -1,0 +1,64 @@
+#ifndef AIRDOS_COMMON_OPTIMIZATION_GRAPH_LINEARIZER_H_
+#define AIRDOS_COMMON_OPTIMIZATION_GRAPH_LINEARIZER_H_
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/optimization/block_matrix.h"
+#include "common/optimization/dense_kernels.h"
+#include "common/optimization/factor_graph.h"
+
+namespace airdos {
+
+/// Cost, gradient and Gauss-Newton Hessian of the factors of a graph that touch a free unknown.
+/// Losses enter by weighting residual and Jacobian with sqrt(loss'), as Ceres does for losses that
+/// are concave in the squared error (Huber's is; others are not let in).
+class GraphLinearizer {
+ public:
+  /// `order`: the block of the graph behind each block of H. Makes the blocks of H that the factors
+  /// need. Both graph and H must outlive this.
+  GraphLinearizer(const FactorGraph& graph, const std::vector<int>& order, BlockMatrix* H);
+
+  /// Leaves out factors that were removed since.
+  void DropRemovedFactors();
+  /// 1/2 sum loss(|r|^2) at the graph's values; not finite where a factor cannot be evaluated.
+  double Cost() const;
+  /// Likewise, of all other factors.
+  double FixedCost() const;
+  /// The same, with H and the gradient.
+  double Linearize(Eigen::VectorXd* gradient);
+
+ private:
+  static constexpr std::size_t kMaxBlocks = FactorGraph::kMaxBlocks;
+  static constexpr std::size_t kMaxPairs = kMaxBlocks * (kMaxBlocks + 1) / 2;
+  struct Product {
+    std::uint8_t first = 0, second = 0;  ///< blocks of the factor
+    int target = 0;                      ///< offset in H
+    AddProduct add = nullptr;
+  };
+  struct Term {
+    const ceres::CostFunction* cost = nullptr;
+    const ceres::LossFunction* loss = nullptr;
+    int factor = 0;
+    int num_residuals = 0;
+    int num_blocks = 0;
+    int num_products = 0;
+    std::array<const double*, kMaxBlocks> values = {};
+    std::array<int, kMaxBlocks> sizes = {};
+    std::array<int, kMaxBlocks> dims = {};
+    std::array<int, kMaxBlocks> columns = {};  ///< in the gradient; -1: constant
+    std::array<Product, kMaxPairs> products = {};
+  };
+
+  Term MakeTerm(int factor, const std::vector<int>& place_of);
+
+  const FactorGraph& graph_;
+  BlockMatrix* H_;
+  std::vector<Term> terms_;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_OPTIMIZATION_GRAPH_LINEARIZER_H_

@@ -1,0 +1,216 @@
+#include "common/optimization/structured_minimizer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/optimization/elimination_order.h"
+#include "common/util/check.h"
+
+namespace airdos {
+namespace {
+
+// As Ceres has them.
+constexpr double kMaxRadius = 1e16;
+constexpr double kMinRadius = 1e-32;
+constexpr double kMinDiagonal = 1e-6;
+constexpr double kMaxDiagonal = 1e32;
+constexpr double kMinQuality = 1e-3;  // of a step that is taken
+constexpr int kMaxInvalidSteps = 5;   // in a row
+
+std::vector<int> Flatten(const std::vector<std::vector<int>>& fronts) {
+  std::vector<int> flat;
+  for (const std::vector<int>& front : fronts) flat.insert(flat.end(), front.begin(), front.end());
+  return flat;
+}
+
+}  // namespace
+
+StructuredMinimizer::StructuredMinimizer(FactorGraph* graph) : graph_(graph) {
+  const EliminationOrder elimination_order = OrderForElimination(*graph);
+  order_ = Flatten(elimination_order.fronts);
+  std::vector<int> dims;
+  std::size_t num_values = 0;
+  for (const int block : order_) {
+    dims.push_back(graph->block(block).tangent_size());
+    num_values += static_cast<std::size_t>(graph->block(block).size);
+  }
+  std::vector<int> front_begins = {0};
+  for (const std::vector<int>& front : elimination_order.fronts) {
+    front_begins.push_back(front_begins.back() + static_cast<int>(front.size()));
+  }
+  H_.emplace(dims);
+  linearizer_.emplace(*graph, order_, &*H_);
+  elimination_.emplace(*H_, front_begins, elimination_order.group_begins);
+  saved_.resize(num_values);
+  for (Eigen::VectorXd* vector : {&gradient_, &diagonal_, &scale_, &damping_, &step_}) {
+    vector->setZero(H_->num_scalars());
+  }
+}
+
+void StructuredMinimizer::TrustRegion::Accept(double quality) {
+  radius = std::min(kMaxRadius, radius / std::max(1.0 / 3, 1 - std::pow(2 * quality - 1, 3)));
+  decrease_factor = 2;
+}
+
+void StructuredMinimizer::TrustRegion::Reject() {
+  radius /= decrease_factor;
+  decrease_factor *= 2;
+}
+
+void StructuredMinimizer::ReadDiagonal() {
+  for (int block = 0; block < H_->num_blocks(); ++block) {
+    const int dim = H_->dim(block);
+    const double* const values = H_->values() + H_->diagonal_offset(block);
+    for (int i = 0; i < dim; ++i) diagonal_[H_->begin(block) + i] = values[i * (dim + 1)];
+  }
+}
+
+/// Ceres damps the diagonal of the Hessian of scaled unknowns; the scale is that of the start.
+void StructuredMinimizer::SetDamping(double radius) {
+  damping_ = (diagonal_.array() * scale_.array().square()).max(kMinDiagonal).min(kMaxDiagonal) /
+             (radius * scale_.array().square());
+}
+
+/// Returns false where the step is of no use.
+bool StructuredMinimizer::ComputeStep() {
+  if (!elimination_->Factorise(*H_, damping_)) return false;
+  step_ = -gradient_;
+  elimination_->Solve(&step_);
+  // With (H + D) d = -g the model's change -(g d + d H d / 2) is this.
+  model_cost_change_ =
+      0.5 * (step_.array() * (damping_.array() * step_.array() - gradient_.array())).sum();
+  return std::isfinite(model_cost_change_) && model_cost_change_ > 0;
+}
+
+void StructuredMinimizer::SaveValues() {
+  double* saved = saved_.data();
+  for (const int index : order_) {
+    const FactorGraph::Block& block = graph_->block(index);
+    saved = std::copy_n(block.values, block.size, saved);
+  }
+}
+
+void StructuredMinimizer::RestoreValues() {
+  const double* saved = saved_.data();
+  for (const int index : order_) {
+    const FactorGraph::Block& block = graph_->block(index);
+    std::copy_n(saved, block.size, block.values);
+    saved += block.size;
+  }
+}
+
+void StructuredMinimizer::ApplyStep() {
+  const double* saved = saved_.data();
+  const double* step = step_.data();
+  for (const int index : order_) {
+    const FactorGraph::Block& block = graph_->block(index);
+    if (block.is_on_manifold()) {
+      manifold_.Plus(saved, step, block.values);
+    } else {
+      for (int i = 0; i < block.size; ++i) block.values[i] = saved[i] + step[i];
+    }
+    saved += block.size;
+    step += block.tangent_size();
+  }
+}
+
+StructuredMinimizer::Norms StructuredMinimizer::MeasureStep() const {
+  Norms squared;
+  const double* saved = saved_.data();
+  for (const int index : order_) {
+    const FactorGraph::Block& block = graph_->block(index);
+    for (int i = 0; i < block.size; ++i) {
+      const double moved = block.values[i] - saved[i];
+      squared.step += moved * moved;
+      squared.values += saved[i] * saved[i];
+    }
+    saved += block.size;
+  }
+  return {std::sqrt(squared.values), std::sqrt(squared.step)};
+}
+
+MinimizerSummary StructuredMinimizer::Minimize(const MinimizerOptions& options) {
+  linearizer_->DropRemovedFactors();
+  MinimizerSummary summary;
+  const double fixed_cost = linearizer_->FixedCost();
+  double cost = linearizer_->Linearize(&gradient_);
+  summary.initial_cost = summary.final_cost = fixed_cost + cost;
+  if (!std::isfinite(summary.initial_cost)) {
+    summary.initial_cost = summary.final_cost = 0;
+    return summary;
+  }
+  ReadDiagonal();
+  scale_ = (1 + diagonal_.array().sqrt()).inverse();
+  SaveValues();
+  TrustRegion region;
+  summary.num_iterations = 1;  // the start counts
+  int num_invalid_steps = 0;
+  summary.has_converged = order_.empty() || Converged(options);
+  for (int i = 0; i < options.max_iterations && !summary.has_converged; ++i) {
+    SetDamping(region.radius);
+    if (!ComputeStep()) {
+      if (++num_invalid_steps >= kMaxInvalidSteps) break;
+      region.Reject();
+      ++summary.num_iterations;
+      continue;
+    }
+    num_invalid_steps = 0;
+    ApplyStep();
+    const double new_cost = linearizer_->Cost();
+    const Norms norms = MeasureStep();
+    const double cost_change = cost - new_cost;
+    summary.has_converged =
+        norms.step <= options.parameter_tolerance * (norms.values + options.parameter_tolerance) ||
+        std::abs(cost_change) <= options.function_tolerance * cost;
+    if (summary.has_converged) {
+      RestoreValues();
+      break;
+    }
+    ++summary.num_iterations;
+    const double quality = cost_change / model_cost_change_;
+    if (!(quality > kMinQuality)) {
+      RestoreValues();
+      region.Reject();
+      if (region.radius < kMinRadius) summary.has_converged = true;
+      continue;
+    }
+    region.Accept(quality);
+    SaveValues();
+    cost = linearizer_->Linearize(&gradient_);
+    ReadDiagonal();
+    summary.has_converged = Converged(options);
+  }
+  summary.final_cost = fixed_cost + cost;
+  return summary;
+}
+
+bool StructuredMinimizer::Converged(const MinimizerOptions& options) const {
+  return gradient_.lpNorm<Eigen::Infinity>() <= options.gradient_tolerance;
+}
+
+std::optional<Matrix6d> StructuredMinimizer::PoseCovariance(int block, double prior_sigma) {
+  linearizer_->DropRemovedFactors();
+  linearizer_->Linearize(&gradient_);
+  damping_.setConstant(1 / (prior_sigma * prior_sigma));
+  const auto place = std::find(order_.begin(), order_.end(), block);
+  if (place == order_.end()) {  // nothing says anything about it
+    return Matrix6d(prior_sigma * prior_sigma * Matrix6d::Identity());
+  }
+  if (!elimination_->Factorise(*H_, damping_)) return std::nullopt;
+  const Matrix6d covariance =
+      elimination_->InverseBlock(H_->begin(static_cast<int>(place - order_.begin())), 6);
+  if (!covariance.allFinite()) return std::nullopt;
+  return covariance;
+}
+
+std::optional<Eigen::VectorXd> StructuredMinimizer::LinearStep(const Eigen::VectorXd& damping) {
+  linearizer_->DropRemovedFactors();
+  linearizer_->Linearize(&gradient_);
+  damping_ = damping;
+  if (!elimination_->Factorise(*H_, damping_)) return std::nullopt;
+  step_ = -gradient_;
+  elimination_->Solve(&step_);
+  return step_;
+}
+
+}  // namespace airdos

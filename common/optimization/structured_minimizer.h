@@ -1,0 +1,102 @@
+#ifndef AIRDOS_COMMON_OPTIMIZATION_STRUCTURED_MINIMIZER_H_
+#define AIRDOS_COMMON_OPTIMIZATION_STRUCTURED_MINIMIZER_H_
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "common/geometry/se3.h"
+#include "common/optimization/block_elimination.h"
+#include "common/optimization/block_matrix.h"
+#include "common/optimization/factor_graph.h"
+#include "common/optimization/graph_linearizer.h"
+
+namespace airdos {
+
+/// Levenberg-Marquardt for graphs of cameras, static landmarks and moving objects. The normal
+/// equations have the shape of an arrow; everything but the poses is eliminated piece by piece:
+///
+///            landmarks   track 1 ... track n   poses
+///           [ \                               | x x ]   3 x 3 blocks, one landmark each
+///           [   \                             | x x ]
+///           [     [1 a    : l]                | x   ]   a track: its slices in time are coupled
+///           with [     [a 2 b  : l]                | x x ]   their neighbours (a, b, ...: motion),
+///           all of [     [  b 3 .: l]                |   x ]   them with what the whole track
+///           shares (l: [     [........L ]   ...          |     ]   segment lengths, a motion over
+///           the track) [ --------------------------------+---- ]   and with the pose of their
+///           frame [ symmetric                       | P   ]   poses, dense at the end
+///
+/// In which order a track is taken apart says elimination_order.h; how, block_elimination.h. With n
+/// people over w frames, b scalars of torso and velocity in a slice (21), l of lengths (14), the
+/// multiply-adds of one step are about
+///
+///   n w (b / 2) (2 b + l + 6 w')^2 + landmarks (6 w)^2 / 2 * 3 + (6 w)^3 / 6
+///
+/// with w' the frames of the piece that a slice carries the poses of: a few for most slices, w for
+/// one. So it is linear in people, and grows with the window by w to w log w while 6 w < 2 b + l,
+/// towards w^3 beyond.
+///
+/// The steps are those of Ceres' LevenbergMarquardtStrategy and TrustRegionMinimizer but for
+/// rounding: the same damping (Jacobi-scaled clamped diagonal), radius, tolerances and counting of
+/// iterations. An iteration allocates nothing; the result depends on the graph only, not on
+/// addresses.
+class StructuredMinimizer {
+ public:
+  /// The graph is not owned and must outlive this; blocks and factors must not be added later.
+  explicit StructuredMinimizer(FactorGraph* graph);
+
+  /// Levenberg-Marquardt from the graph's values, which become the result. Where the cost at the
+  /// start is not finite nothing moves.
+  MinimizerSummary Minimize(const MinimizerOptions& options);
+
+  /// Marginal covariance of a free pose at the graph's values: of the inverse Gauss-Newton Hessian
+  /// with losses applied, after adding 1 / prior_sigma^2 to the diagonal. Nothing if that cannot be
+  /// factorised.
+  std::optional<Matrix6d> PoseCovariance(int block, double prior_sigma);
+
+  /// One undamped step of Gauss and Newton with `damping` on the diagonal, in the order of order();
+  /// values stay. Nothing if the system cannot be factorised.
+  std::optional<Eigen::VectorXd> LinearStep(const Eigen::VectorXd& damping);
+  /// The blocks of the graph that are solved for, as they stand in the linear system.
+  const std::vector<int>& order() const { return order_; }
+
+ private:
+  /// The trust region, as a radius, and how it follows the success of steps.
+  struct TrustRegion {
+    double radius = 1e4;
+    double decrease_factor = 2;
+    void Accept(double quality);
+    void Reject();
+  };
+
+  struct Norms {
+    double values = 0;  ///< of the saved values
+    double step = 0;    ///< of how far the graph's values are from them
+  };
+
+  void ReadDiagonal();
+  void SetDamping(double radius);
+  bool ComputeStep();
+  void SaveValues();
+  void RestoreValues();
+  /// The graph's values: the saved ones moved by the step.
+  void ApplyStep();
+  Norms MeasureStep() const;
+  /// By the gradient.
+  bool Converged(const MinimizerOptions& options) const;
+
+  FactorGraph* graph_;
+  std::vector<int> order_;
+  std::optional<BlockMatrix> H_;
+  std::optional<GraphLinearizer> linearizer_;
+  std::optional<BlockElimination> elimination_;
+  PoseManifold manifold_;
+
+  Eigen::VectorXd gradient_, diagonal_, scale_, damping_, step_;
+  std::vector<double> saved_;  // values of the blocks in order_
+  double model_cost_change_ = 0;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_OPTIMIZATION_STRUCTURED_MINIMIZER_H_

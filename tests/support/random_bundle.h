@@ -1,0 +1,37 @@
+#ifndef AIRDOS_TESTS_SUPPORT_RANDOM_BUNDLE_H_
+#define AIRDOS_TESTS_SUPPORT_RANDOM_BUNDLE_H_
+
+#include <cstdint>
+
+#include "common/optimization/bundle_adjuster.h"
+#include "common/optimization/bundle_problem.h"
+
+namespace airdos {
+
+/// What a random bundle adjustment is made of.
+struct RandomBundleOptions {
+  std::uint64_t seed = 1;
+  int num_frames = 8;
+  int num_landmarks = 30;
+  int num_people = 2;   ///< walk
+  int num_objects = 1;  ///< rigid, of six points, drive
+  MotionForm person_motion = MotionForm::kVelocity;
+  MotionForm object_motion = MotionForm::kSe3Track;
+  bool has_point_measurements = false;  ///< in camera axes instead of pixels
+  int num_fixed_frames = 1;             ///< the first, then any
+  double fixed_landmarks = 0;           ///< share of them
+  double gaps = 0;                      ///< share of the sightings that are missing
+  double missing_joints = 0;            ///< share
+  bool has_track_breaks = false;
+  double mono = 0;      ///< share of the landmarks' observations without a right image
+  double outliers = 0;  ///< share of all observations
+  bool has_accelerations = false;
+  bool has_known_lengths = false;
+};
+
+/// A camera that moves through a street; start values off by a few centimetres.
+BundleProblem MakeRandomBundle(const RandomBundleOptions& options);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_TESTS_SUPPORT_RANDOM_BUNDLE_H_
