@@ -13,20 +13,20 @@ namespace {
 /// Solves the graph as it is now, and again after factors were removed from it.
 class Minimizer {
  public:
-  Minimizer(BundleSolver solver, FactorGraph* graph) {
-    if (solver == BundleSolver::kCeres) {
+  Minimizer(const BundleOptions& bundle, FactorGraph* graph) {
+    options_.function_tolerance = bundle.function_tolerance;
+    options_.steps_by_track = bundle.steps_by_track;
+    if (bundle.solver == BundleSolver::kCeres) {
       minimizer_.emplace<CeresMinimizer>(graph);
     } else {
       minimizer_.emplace<StructuredMinimizer>(graph);
     }
   }
 
-  MinimizerSummary Minimize(int max_iterations, double function_tolerance) {
-    MinimizerOptions options;
-    options.max_iterations = max_iterations;
-    options.function_tolerance = function_tolerance;
-    if (auto* ceres = std::get_if<CeresMinimizer>(&minimizer_)) return ceres->Minimize(options);
-    return std::get<StructuredMinimizer>(minimizer_).Minimize(options);
+  MinimizerSummary Minimize(int max_iterations) {
+    options_.max_iterations = max_iterations;
+    if (auto* ceres = std::get_if<CeresMinimizer>(&minimizer_)) return ceres->Minimize(options_);
+    return std::get<StructuredMinimizer>(minimizer_).Minimize(options_);
   }
 
   std::optional<Matrix6d> PoseCovariance(int block) {
@@ -37,6 +37,7 @@ class Minimizer {
   }
 
  private:
+  MinimizerOptions options_;
   std::variant<std::monostate, CeresMinimizer, StructuredMinimizer> minimizer_;
 };
 
@@ -49,12 +50,11 @@ BundleSummary SolveBundle(const BundleOptions& options, BundleProblem* problem) 
     human.num_motion_eliminated = 0;
   }
   BundleGraph graph(options, problem);
-  Minimizer minimizer(options.solver, graph.factor_graph());
-  const MinimizerSummary first =
-      minimizer.Minimize(options.max_iterations, options.function_tolerance);
+  Minimizer minimizer(options, graph.factor_graph());
+  const MinimizerSummary first = minimizer.Minimize(options.max_iterations);
   MinimizerSummary last = first;
   if (options.max_iterations_after_elimination > 0 && graph.Eliminate() > 0) {
-    last = minimizer.Minimize(options.max_iterations_after_elimination, options.function_tolerance);
+    last = minimizer.Minimize(options.max_iterations_after_elimination);
     last.num_iterations += first.num_iterations;
   }
   graph.WriteBack();

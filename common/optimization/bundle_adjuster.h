@@ -17,10 +17,11 @@ struct BundleOptions {
   bool use_motion = true;
   MotionForm motion_form = MotionForm::kVelocity;  ///< where a person's own is not given
 
-  // Solver. Both take the same steps but for rounding. Only iterations are limited, never time: the
+  // Solver. Only iterations are limited, never time: the
   // result must not depend on the machine.
   BundleSolver solver = BundleSolver::kStructured;
-  int max_iterations = 6;                    ///< of the first pass
+  bool steps_by_track = true;  ///< kStructured: see MinimizerOptions; if false, steps as Ceres'
+  int max_iterations = 6;      ///< of the first pass
   int max_iterations_after_elimination = 4;  ///< of the pass after elimination; 0: no elimination
   double function_tolerance = 1e-5;          ///< relative change of cost that ends a pass
 

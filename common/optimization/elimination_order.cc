@@ -40,13 +40,13 @@ class Orderer {
     ReadFactors();
     std::vector<int> poses;
     std::vector<Track> tracks;
+    BeginGroup();
     for (int i = 0; i < static_cast<int>(graph_.blocks().size()); ++i) {
       const Block& block = graph_.block(i);
       if (!is_used_[i] || block.is_constant) continue;
       if (block.kind == Kind::kPose) {
         poses.push_back(i);
       } else if (block.kind == Kind::kLandmark) {
-        BeginGroup();
         order_.fronts.push_back({i});
       } else {
         AIRDOS_CHECK(block.track >= 0);

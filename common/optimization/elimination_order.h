@@ -12,7 +12,7 @@ namespace airdos {
 struct EliminationOrder {
   /// Blocks of the graph that are free and have factors, by front.
   std::vector<std::vector<int>> fronts;
-  /// Fronts of one landmark or one track: [begins[i], begins[i + 1]). The last group are the poses.
+  /// Fronts of all landmarks, of each track, of the poses: [begins[i], begins[i + 1]).
   std::vector<int> group_begins;
 };
 

@@ -30,14 +30,40 @@ Weighted ApplyLoss(const ceres::LossFunction* loss, const double* residuals, int
 }  // namespace
 
 GraphLinearizer::GraphLinearizer(const FactorGraph& graph, const std::vector<int>& order,
-                                 BlockMatrix* H)
+                                 const std::vector<int>& group_begins, BlockMatrix* H)
     : graph_(graph), H_(H) {
+  const int num_groups = static_cast<int>(group_begins.size()) - 1;
   std::vector<int> place_of(graph.blocks().size(), kConstant);
-  for (std::size_t i = 0; i < order.size(); ++i) place_of[order[i]] = static_cast<int>(i);
-  terms_.reserve(graph.factors().size());
+  std::vector<int> group_of(graph.blocks().size(), num_groups - 1);
+  for (int group = 0; group < num_groups; ++group) {
+    for (int i = group_begins[group]; i < group_begins[group + 1]; ++i) {
+      place_of[order[i]] = i;
+      group_of[order[i]] = group;
+    }
+  }
+  std::vector<std::vector<int>> factors(num_groups);
   for (int i = 0; i < static_cast<int>(graph.factors().size()); ++i) {
     const FactorGraph::Factor& factor = graph.factors()[i];
-    if (!factor.is_removed && !graph.IsFixed(factor)) terms_.push_back(MakeTerm(i, place_of));
+    if (factor.is_removed || graph.IsFixed(factor)) continue;
+    int group = num_groups - 1;
+    for (int k = 0; k < factor.num_blocks; ++k) group = std::min(group, group_of[factor.blocks[k]]);
+    factors[group].push_back(i);
+  }
+  terms_.reserve(graph.factors().size());
+  for (int group = 0; group < num_groups; ++group) {
+    for (const int factor : factors[group]) {
+      terms_.push_back(MakeTerm(factor, place_of));
+      terms_.back().group = group;
+    }
+  }
+  FindTermBegins(num_groups);
+}
+
+void GraphLinearizer::FindTermBegins(int num_groups) {
+  term_begins_.assign(num_groups + 1, terms_.size());
+  for (std::size_t i = terms_.size(); i-- > 0;) term_begins_[terms_[i].group] = i;
+  for (int group = num_groups - 1; group >= 0; --group) {
+    term_begins_[group] = std::min(term_begins_[group], term_begins_[group + 1]);
   }
 }
 
@@ -79,6 +105,7 @@ void GraphLinearizer::DropRemovedFactors() {
     return graph_.factors()[term.factor].is_removed;
   };
   terms_.erase(std::remove_if(terms_.begin(), terms_.end(), is_removed), terms_.end());
+  FindTermBegins(num_groups());
 }
 
 double GraphLinearizer::FixedCost() const {
@@ -92,10 +119,11 @@ double GraphLinearizer::FixedCost() const {
   return 0.5 * cost;
 }
 
-double GraphLinearizer::Cost() const {
+double GraphLinearizer::Cost(int group) const {
   double cost = 0;
   std::array<double, FactorGraph::kMaxResiduals> residuals = {};
-  for (const Term& term : terms_) {
+  for (std::size_t i = term_begins_[group]; i < term_begins_[group + 1]; ++i) {
+    const Term& term = terms_[i];
     if (!term.cost->Evaluate(term.values.data(), residuals.data(), nullptr)) return kInvalid;
     cost += ApplyLoss(term.loss, residuals.data(), term.num_residuals).cost;
   }

@@ -17,17 +17,21 @@ namespace airdos {
 /// are concave in the squared error (Huber's is; others are not let in).
 class GraphLinearizer {
  public:
-  /// `order`: the block of the graph behind each block of H. Makes the blocks of H that the factors
-  /// need. Both graph and H must outlive this.
-  GraphLinearizer(const FactorGraph& graph, const std::vector<int>& order, BlockMatrix* H);
+  /// `order`: the block of the graph behind each block of H; `group_begins`: first such block of
+  /// each group, and the number of blocks. A factor belongs to the first group that it touches.
+  /// Makes the blocks of H that the factors need. Both graph and H must outlive this.
+  GraphLinearizer(const FactorGraph& graph, const std::vector<int>& order,
+                  const std::vector<int>& group_begins, BlockMatrix* H);
 
   /// Leaves out factors that were removed since.
   void DropRemovedFactors();
-  /// 1/2 sum loss(|r|^2) at the graph's values; not finite where a factor cannot be evaluated.
-  double Cost() const;
+  int num_groups() const { return static_cast<int>(term_begins_.size()) - 1; }
+  /// 1/2 sum loss(|r|^2) of a group's factors at the graph's values; not finite where a factor
+  /// cannot be evaluated.
+  double Cost(int group) const;
   /// Likewise, of all other factors.
   double FixedCost() const;
-  /// The same, with H and the gradient.
+  /// Of all groups, with H and the gradient.
   double Linearize(Eigen::VectorXd* gradient);
 
  private:
@@ -42,6 +46,7 @@ class GraphLinearizer {
     const ceres::CostFunction* cost = nullptr;
     const ceres::LossFunction* loss = nullptr;
     int factor = 0;
+    int group = 0;
     int num_residuals = 0;
     int num_blocks = 0;
     int num_products = 0;
@@ -53,10 +58,12 @@ class GraphLinearizer {
   };
 
   Term MakeTerm(int factor, const std::vector<int>& place_of);
+  void FindTermBegins(int num_groups);
 
   const FactorGraph& graph_;
   BlockMatrix* H_;
-  std::vector<Term> terms_;
+  std::vector<Term> terms_;  // by group
+  std::vector<std::size_t> term_begins_;
 };
 
 }  // namespace airdos

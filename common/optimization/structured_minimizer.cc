@@ -32,16 +32,24 @@ StructuredMinimizer::StructuredMinimizer(FactorGraph* graph) : graph_(graph) {
   std::size_t num_values = 0;
   for (const int block : order_) {
     dims.push_back(graph->block(block).tangent_size());
+    value_begins_.push_back(num_values);
     num_values += static_cast<std::size_t>(graph->block(block).size);
   }
   std::vector<int> front_begins = {0};
   for (const std::vector<int>& front : elimination_order.fronts) {
     front_begins.push_back(front_begins.back() + static_cast<int>(front.size()));
   }
+  for (const int front : elimination_order.group_begins) {
+    group_begins_.push_back(front_begins[front]);
+  }
   H_.emplace(dims);
-  linearizer_.emplace(*graph, order_, &*H_);
+  linearizer_.emplace(*graph, order_, group_begins_, &*H_);
   elimination_.emplace(*H_, front_begins, elimination_order.group_begins);
+  value_begins_.push_back(num_values);
   saved_.resize(num_values);
+  for (auto* values : {&costs_, &new_costs_, &caution_, &caution_step_}) {
+    values->resize(group_begins_.size() - 1);
+  }
   for (Eigen::VectorXd* vector : {&gradient_, &diagonal_, &scale_, &damping_, &step_}) {
     vector->setZero(H_->num_scalars());
   }
@@ -69,6 +77,11 @@ void StructuredMinimizer::ReadDiagonal() {
 void StructuredMinimizer::SetDamping(double radius) {
   damping_ = (diagonal_.array() * scale_.array().square()).max(kMinDiagonal).min(kMaxDiagonal) /
              (radius * scale_.array().square());
+  for (int group = 0; group < num_groups(); ++group) {
+    if (caution_[group] == 1) continue;
+    const int begin = H_->begin(group_begins_[group]);
+    damping_.segment(begin, H_->begin(group_begins_[group + 1]) - begin) *= caution_[group];
+  }
 }
 
 /// Returns false where the step is of no use.
@@ -90,27 +103,58 @@ void StructuredMinimizer::SaveValues() {
   }
 }
 
-void StructuredMinimizer::RestoreValues() {
-  const double* saved = saved_.data();
-  for (const int index : order_) {
-    const FactorGraph::Block& block = graph_->block(index);
-    std::copy_n(saved, block.size, block.values);
-    saved += block.size;
+void StructuredMinimizer::RestoreValues(int group) {
+  for (int i = group_begins_[group]; i < group_begins_[group + 1]; ++i) {
+    const FactorGraph::Block& block = graph_->block(order_[i]);
+    std::copy_n(saved_.data() + value_begins_[i], block.size, block.values);
   }
 }
 
-void StructuredMinimizer::ApplyStep() {
-  const double* saved = saved_.data();
-  const double* step = step_.data();
-  for (const int index : order_) {
-    const FactorGraph::Block& block = graph_->block(index);
+void StructuredMinimizer::RestoreValues() {
+  for (int group = 0; group < num_groups(); ++group) RestoreValues(group);
+}
+
+double StructuredMinimizer::Evaluate() {
+  double sum = 0;
+  for (int group = 0; group < num_groups(); ++group) {
+    new_costs_[group] = linearizer_->Cost(group);
+    sum += new_costs_[group];
+  }
+  return sum;
+}
+
+double StructuredMinimizer::RestoreWorseTracks() {
+  double sum = 0;
+  for (int group = 1; group + 1 < num_groups(); ++group) {
+    caution_[group] = std::max(1.0, caution_[group] / 3);
+    if (new_costs_[group] <= costs_[group]) {
+      caution_step_[group] = 2;
+      continue;
+    }
+    RestoreValues(group);
+    const double cost = linearizer_->Cost(group);
+    if (cost < new_costs_[group]) {
+      sum += new_costs_[group] - cost;
+      new_costs_[group] = cost;
+      caution_[group] *= 3 * caution_step_[group];
+      caution_step_[group] *= 2;
+    } else {  // worse still, as its cameras moved
+      ApplyStep(group);
+    }
+  }
+  return sum;
+}
+
+void StructuredMinimizer::ApplyStep(int group) {
+  for (int i = group_begins_[group]; i < group_begins_[group + 1]; ++i) {
+    const FactorGraph::Block& block = graph_->block(order_[i]);
+    const double* const saved = saved_.data() + value_begins_[i];
+    const double* const step = step_.data() + H_->begin(i);
     if (block.is_on_manifold()) {
       manifold_.Plus(saved, step, block.values);
     } else {
-      for (int i = 0; i < block.size; ++i) block.values[i] = saved[i] + step[i];
+      for (int k = 0; k < block.size; ++k) block.values[k] = saved[k] + step[k];
     }
-    saved += block.size;
-    step += block.tangent_size();
   }
 }
 
@@ -140,6 +184,12 @@ MinimizerSummary StructuredMinimizer::Minimize(const MinimizerOptions& options) 
     return summary;
   }
   ReadDiagonal();
+  std::fill(caution_.begin(), caution_.end(), 1.0);
+  std::fill(caution_step_.begin(), caution_step_.end(), 2.0);
+  if (options.steps_by_track) {
+    Evaluate();
+    costs_ = new_costs_;
+  }
   scale_ = (1 + diagonal_.array().sqrt()).inverse();
   SaveValues();
   TrustRegion region;
@@ -155,8 +205,9 @@ MinimizerSummary StructuredMinimizer::Minimize(const MinimizerOptions& options) 
       continue;
     }
     num_invalid_steps = 0;
-    ApplyStep();
-    const double new_cost = linearizer_->Cost();
+    for (int group = 0; group < num_groups(); ++group) ApplyStep(group);
+    double new_cost = Evaluate();
+    if (options.steps_by_track) new_cost -= RestoreWorseTracks();
     const Norms norms = MeasureStep();
     const double cost_change = cost - new_cost;
     summary.has_converged =
@@ -176,6 +227,7 @@ MinimizerSummary StructuredMinimizer::Minimize(const MinimizerOptions& options) 
     }
     region.Accept(quality);
     SaveValues();
+    costs_ = new_costs_;
     cost = linearizer_->Linearize(&gradient_);
     ReadDiagonal();
     summary.has_converged = Converged(options);

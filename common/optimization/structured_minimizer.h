@@ -74,13 +74,19 @@ class StructuredMinimizer {
     double step = 0;    ///< of how far the graph's values are from them
   };
 
+  int num_groups() const { return linearizer_->num_groups(); }
   void ReadDiagonal();
   void SetDamping(double radius);
   bool ComputeStep();
   void SaveValues();
+  void RestoreValues(int group);
   void RestoreValues();
-  /// The graph's values: the saved ones moved by the step.
-  void ApplyStep();
+  /// Costs of the groups at the graph's values into `new_costs_`; returns their sum.
+  double Evaluate();
+  /// Puts tracks back that are better off where they were. Returns what that saves.
+  double RestoreWorseTracks();
+  /// A group's values in the graph: the saved ones moved by the step.
+  void ApplyStep(int group);
   Norms MeasureStep() const;
   /// By the gradient.
   bool Converged(const MinimizerOptions& options) const;
@@ -94,6 +100,10 @@ class StructuredMinimizer {
 
   Eigen::VectorXd gradient_, diagonal_, scale_, damping_, step_;
   std::vector<double> saved_;  // values of the blocks in order_
+  // Landmarks, each track, poses: first block, value in saved_ and scalar; cost; extra damping.
+  std::vector<int> group_begins_;
+  std::vector<std::size_t> value_begins_;
+  std::vector<double> costs_, new_costs_, caution_, caution_step_;
   double model_cost_change_ = 0;
 };
 

@@ -31,6 +31,7 @@ TEST(BaProblemsTest, ReachTheReferencesCost) {
     for (const auto& [variant, expected] : variants.items()) {
       SCOPED_TRACE(name + " " + variant);
       BundleOptions options = read.options;
+      options.steps_by_track = false;
       options.use_rigidity = variant == "womot" || variant == "full";
       options.use_motion = variant == "worig" || variant == "full";
       std::vector<BundleSummary> summaries;

@@ -110,6 +110,7 @@ TEST_P(StructuredSolverTest, EndsWhereCeresEnds) {
   for (int seed = 1; seed <= 2; ++seed) {
     SCOPED_TRACE(seed);
     BundleOptions options;
+    options.steps_by_track = seed == 2;
     options.max_iterations = options.max_iterations_after_elimination = 300;
     options.function_tolerance = 1e-15;
     // Tighter rigidity converges in hundreds of steps where joints are far off, and rounding alone
@@ -136,6 +137,7 @@ TEST_P(StructuredSolverTest, TakesTheSameStepsAsCeres) {
   for (int seed = 1; seed <= kSeeds; ++seed) {
     SCOPED_TRACE(seed);
     BundleOptions options;
+    options.steps_by_track = false;
     options.max_iterations_after_elimination = 0;
     options.function_tolerance = 1e-6;
     BundleProblem start = Make(seed, &options);
