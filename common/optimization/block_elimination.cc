@@ -34,30 +34,31 @@ class BlockElimination::Analysis {
       front.end = front_begins[f + 1];
       result_.fronts_.push_back(front);
     }
+    SetGroups();
     const int num_fronts = static_cast<int>(result_.fronts_.size());
     for (int f = 0; f < num_fronts; ++f) FindLaterBlocks(f);
     for (int f = 0; f < num_fronts; ++f) PlacePanel(f);
-    for (int f = 0; f < num_fronts; ++f) PlaceEntries(f);
+    result_.shares_offset_ = num_values_;
+    num_values_ += (H.num_groups() - 1) * result_.share_size();
+    PlaceEntries();
     for (int f = 0; f < num_fronts; ++f) FindUpdates(f);
   }
 
   int num_values() const { return num_values_; }
 
-  /// No group but the last one takes updates from another.
-  bool AreGroupsIndependent(const std::vector<int>& group_begins) const {
-    const int last_group = group_begins[group_begins.size() - 2];
-    for (std::size_t g = 0; g + 2 < group_begins.size(); ++g) {
-      for (int f = group_begins[g]; f < group_begins[g + 1]; ++f) {
-        for (const int block : later_[f]) {
-          const int target = front_of_[block];
-          if (target >= group_begins[g + 1] && target < last_group) return false;
-        }
+ private:
+  void SetGroups() {
+    for (int group = 0; group < H_.num_groups(); ++group) {
+      for (int f = result_.group_begins_[group]; f < result_.group_begins_[group + 1]; ++f) {
+        result_.fronts_[f].group = group;
       }
     }
-    return true;
+    const int first_pose_front = result_.group_begins_[H_.num_groups() - 1];
+    const int num_fronts = static_cast<int>(result_.fronts_.size());
+    AIRDOS_CHECK(num_fronts - first_pose_front <= 1);
+    if (first_pose_front < num_fronts) result_.poses_ = &result_.fronts_.back();
   }
 
- private:
   /// Couplings of H, and those that earlier fronts leave behind.
   void FindLaterBlocks(int f) {
     const Front& front = result_.fronts_[f];
@@ -91,26 +92,35 @@ class BlockElimination::Analysis {
     num_values_ += front.rows * front.stride;
   }
 
-  void PlaceEntries(int f) {
-    Front& front = result_.fronts_[f];
-    for (int row = front.begin; row < front.end; ++row) {
-      place_[row] = H_.begin(row) - front.first_scalar;
-    }
-    int col = front.rows;
-    for (const int block : later_[f]) {
-      place_[block] = col;
-      col += H_.dim(block);
-    }
-    front.entries_begin = static_cast<int>(result_.entries_.size());
-    for (int row = front.begin; row < front.end; ++row) {
-      const int target = front.offset + (H_.begin(row) - front.first_scalar) * front.stride;
-      for (int e = H_.first_entry(row); e >= 0; e = H_.entries()[e].next) {
-        const BlockMatrix::Entry& entry = H_.entries()[e];
-        result_.entries_.push_back({entry.offset, target + place_[entry.col], H_.dim(row),
-                                    H_.dim(entry.col), front.stride});
+  /// The blocks of H into panels, and those of the poses into the share of their layer.
+  void PlaceEntries() {
+    std::vector<std::vector<PanelEntry>> by_layer(H_.num_groups());
+    for (const Front& front : result_.fronts_) {
+      for (int row = front.begin; row < front.end; ++row) {
+        place_[row] = H_.begin(row) - front.first_scalar;
+      }
+      int col = front.rows;
+      for (const int block : later_[&front - result_.fronts_.data()]) {
+        place_[block] = col;
+        col += H_.dim(block);
+      }
+      for (int row = front.begin; row < front.end; ++row) {
+        for (int e = H_.first_entry(row); e >= 0; e = H_.entries()[e].next) {
+          const BlockMatrix::Entry& entry = H_.entries()[e];
+          AIRDOS_CHECK(entry.layer == front.group || &front == result_.poses_);
+          const int panel =
+              entry.layer == front.group ? front.offset : result_.share_offset(entry.layer);
+          const int target = panel + (H_.begin(row) - front.first_scalar) * front.stride;
+          by_layer[entry.layer].push_back({entry.offset, target + place_[entry.col], H_.dim(row),
+                                           H_.dim(entry.col), front.stride});
+        }
       }
     }
-    front.entries_end = static_cast<int>(result_.entries_.size());
+    for (const std::vector<PanelEntry>& entries : by_layer) {
+      result_.entry_begins_.push_back(static_cast<int>(result_.entries_.size()));
+      result_.entries_.insert(result_.entries_.end(), entries.begin(), entries.end());
+    }
+    result_.entry_begins_.push_back(static_cast<int>(result_.entries_.size()));
   }
 
   /// Columns of panel `target` of the blocks of `later` from the first on that it holds itself.
@@ -156,7 +166,10 @@ class BlockElimination::Analysis {
       if (is_neighbour) {
         result_.runs_.back().size += H_.dim(later[i]);
       } else {
-        result_.runs_.push_back({col, H_.dim(later[i]), H_.begin(later[i])});
+        const int scalar = H_.begin(later[i]);
+        const bool is_pose = &result_.fronts_[targets[target_of[i]]] == result_.poses_;
+        const int share = result_.share_begin(front.group) - H_.first_pose_scalar();
+        result_.runs_.push_back({col, H_.dim(later[i]), scalar, is_pose ? share + scalar : scalar});
         firsts.push_back(i);
       }
       col += H_.dim(later[i]);
@@ -173,7 +186,11 @@ class BlockElimination::Analysis {
       const Run& run_a = result_.runs_[front->runs_begin + a];
       const int t = target_of[firsts[a]];
       const Front& target = result_.fronts_[targets[t]];
-      const int row = target.offset + places[t][firsts[a]] * target.stride;
+      // No group takes updates from another but the poses.
+      AIRDOS_CHECK(&target == result_.poses_ || target.group == front->group);
+      const int panel =
+          &target == result_.poses_ ? result_.share_offset(front->group) : target.offset;
+      const int row = panel + places[t][firsts[a]] * target.stride;
       for (std::size_t b = a; b < firsts.size(); ++b) {
         const Run& run_b = result_.runs_[front->runs_begin + b];
         result_.updates_.push_back(
@@ -197,63 +214,74 @@ class BlockElimination::Analysis {
 
 BlockElimination::BlockElimination(const BlockMatrix& H, const std::vector<int>& front_begins,
                                    const std::vector<int>& group_begins)
-    : group_begins_(group_begins) {
-  AIRDOS_CHECK(!front_begins.empty() && !group_begins.empty());
+    : num_scalars_(H.num_scalars()),
+      num_pose_scalars_(H.num_pose_scalars()),
+      group_begins_(group_begins) {
+  AIRDOS_CHECK(num_groups() == H.num_groups());
   const Analysis analysis(H, front_begins, this);
-  if (!analysis.AreGroupsIndependent(group_begins_)) {  // not in any graph that we make
-    group_begins_ = {0, group_begins_[group_begins_.size() - 2], group_begins_.back()};
-  }
   panels_.resize(analysis.num_values());
   int largest = 0;
   for (const Front& front : fronts_) largest = std::max(largest, front.width);
   gathered_.resize(largest);
 }
 
-bool BlockElimination::Factorise(const BlockMatrix& H, const Eigen::VectorXd& D) {
-  if (fronts_.empty()) return true;
-  // The last group takes updates from all others.
-  for (int group = static_cast<int>(group_begins_.size()) - 2, pass = 0; pass < 2; ++pass) {
-    const int first = pass == 0 ? group : 0;
-    const int last = pass == 0 ? group + 1 : group;
-    for (int g = first; g < last; ++g) {
-      const int begin = group_begins_[g], end = group_begins_[g + 1];
-      if (begin == end) continue;
-      AssembleFronts(H, D, begin, end);
-      if (pass == 0) continue;
-      for (int f = begin; f < end; ++f) {
-        if (!FactoriseFront(fronts_[f])) return false;
-      }
-    }
+bool BlockElimination::Eliminate(const BlockMatrix& H, const Eigen::VectorXd& D, int group) {
+  const int begin = group_begins_[group], end = group_begins_[group + 1];
+  const auto clear = [this](int first, int size) {
+    std::fill_n(panels_.begin() + first, size, 0.0);
+  };
+  clear(share_offset(group), share_size());
+  if (begin == end) return true;
+  const Front& last = fronts_[end - 1];
+  clear(fronts_[begin].offset, last.offset + last.rows * last.stride - fronts_[begin].offset);
+  AddEntries(H, group);
+  for (int f = begin; f < end; ++f) {
+    AddDiagonal(D, fronts_[f]);
   }
-  for (int f = group_begins_[group_begins_.size() - 2]; f < group_begins_.back(); ++f) {
+  for (int f = begin; f < end; ++f) {
     if (!FactoriseFront(fronts_[f])) return false;
   }
   return true;
 }
 
-void BlockElimination::AssembleFronts(const BlockMatrix& H, const Eigen::VectorXd& D, int begin,
-                                      int end) {
-  const int last = end == static_cast<int>(fronts_.size()) ? static_cast<int>(panels_.size())
-                                                           : fronts_[end].offset;
-  std::fill(panels_.begin() + fronts_[begin].offset, panels_.begin() + last, 0.0);
-  const double* const values = H.values();
-  for (int e = fronts_[begin].entries_begin; e < fronts_[end - 1].entries_end; ++e) {
+bool BlockElimination::FactorisePoses(const BlockMatrix& H, const Eigen::VectorXd& D) {
+  if (poses_ == nullptr) return true;
+  const int size = share_size();
+  ArrayMap sum(panels_.data() + poses_->offset, size);
+  sum.setZero();
+  for (int group = 0; group + 1 < num_groups(); ++group) {
+    sum += ConstArrayMap(panels_.data() + share_offset(group), size);
+  }
+  AddEntries(H, num_groups() - 1);
+  AddDiagonal(D, *poses_);
+  return FactoriseFront(*poses_);
+}
+
+bool BlockElimination::Factorise(const BlockMatrix& H, const Eigen::VectorXd& D) {
+  for (int group = 0; group + 1 < num_groups(); ++group) {
+    if (!Eliminate(H, D, group)) return false;
+  }
+  return FactorisePoses(H, D);
+}
+
+void BlockElimination::AddEntries(const BlockMatrix& H, int layer) {
+  for (int e = entry_begins_[layer]; e < entry_begins_[layer + 1]; ++e) {
     const PanelEntry& entry = entries_[e];
-    const double* source = values + entry.source;
+    const double* source = H.values() + entry.source;
     double* target = panels_.data() + entry.target;
     for (int row = 0; row < entry.rows; ++row) {
-      for (int col = 0; col < entry.cols; ++col) target[col] = source[col];
+      for (int col = 0; col < entry.cols; ++col) target[col] += source[col];
       source += entry.cols;
       target += entry.stride;
     }
   }
-  for (int f = begin; f < end; ++f) {
-    const Front& front = fronts_[f];
-    double* diagonal = panels_.data() + front.offset;
-    for (int row = 0; row < front.rows; ++row) {
-      *diagonal += D[front.first_scalar + row];
-      diagonal += front.stride + 1;
-    }
+}
+
+void BlockElimination::AddDiagonal(const Eigen::VectorXd& D, const Front& front) {
+  double* diagonal = panels_.data() + front.offset;
+  for (int row = 0; row < front.rows; ++row) {
+    *diagonal += D[front.first_scalar + row];
+    diagonal += front.stride + 1;
   }
 }
 
@@ -269,9 +297,41 @@ bool BlockElimination::FactoriseFront(const Front& front) {
 }
 
 void BlockElimination::Solve(Eigen::VectorXd* b) const {
-  double* const x = b->data();
-  for (const Front& front : fronts_) SolveForward(front, x);
-  for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) SolveBackward(*front, x);
+  for (int group = 0; group + 1 < num_groups(); ++group) SolveForward(group, b);
+  SolveBackward(b);
+}
+
+void BlockElimination::SolveForward(int group, Eigen::VectorXd* b) const {
+  for (int f = group_begins_[group]; f < group_begins_[group + 1]; ++f) {
+    SolveForward(fronts_[f], b->data());
+  }
+}
+
+void BlockElimination::SolveBackward(Eigen::VectorXd* b) const {
+  if (poses_ != nullptr) {
+    for (int group = 0; group + 1 < num_groups(); ++group) {
+      b->segment(poses_->first_scalar, poses_->rows) +=
+          b->segment(share_begin(group), num_pose_scalars_);
+    }
+    SolveForward(*poses_, b->data());
+  }
+  for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
+    SolveBackward(*front, b->data());
+  }
+}
+
+void BlockElimination::MoveShare(int group, const Eigen::VectorXd& d, Eigen::VectorXd* b) const {
+  if (poses_ == nullptr) return;
+  const double* row = panels_.data() + share_offset(group);
+  const double* const moved = d.data() + poses_->first_scalar;
+  double* const share = b->data() + share_begin(group);
+  for (int i = 0; i < poses_->rows; ++i) {
+    const int num = poses_->rows - i - 1;
+    const ConstArrayMap right(row + i + 1, num);
+    share[i] -= row[i] * moved[i] + (right * ConstArrayMap(moved + i + 1, num)).sum();
+    ArrayMap(share + i + 1, num) -= right * moved[i];
+    row += poses_->stride;
+  }
 }
 
 /// y = U^-T b, and what comes later -= W^T y.
@@ -289,7 +349,7 @@ void BlockElimination::SolveForward(const Front& front, double* x) const {
     later += y * ConstArrayMap(values + front.rows, num_later);
   }
   for (int r = front.runs_begin; r < front.runs_end; ++r) {
-    ArrayMap(x + runs_[r].scalar, runs_[r].size) -=
+    ArrayMap(x + runs_[r].target, runs_[r].size) -=
         later.segment(runs_[r].col - front.rows, runs_[r].size);
   }
 }

@@ -57,6 +57,8 @@ class Orderer {
     }
     for (const Track& track : tracks) AddTrack(track);
     BeginGroup();
+    // Not in any graph that we make: one group of all that is no pose.
+    if (are_groups_coupled_) order_.group_begins = {0, order_.group_begins.back()};
     if (!poses.empty()) order_.fronts.push_back(poses);
     BeginGroup();
     return std::move(order_);
@@ -78,6 +80,11 @@ class Orderer {
   void ReadPair(int a, int b) {
     const Block& block_a = graph_.block(a);
     const Block& block_b = graph_.block(b);
+    const bool is_pose = block_a.kind == Kind::kPose || block_b.kind == Kind::kPose;
+    if (!is_pose && (block_a.kind != block_b.kind || block_a.kind == Kind::kLandmark ||
+                     block_a.track != block_b.track)) {
+      are_groups_coupled_ = true;
+    }
     for (const Block* block : {&block_a, &block_b}) {
       if (block->kind != Kind::kTrack || block->slice == Block::kWholeTrack) return;
     }
@@ -157,6 +164,7 @@ class Orderer {
   std::vector<char> has_other_slice_;
   std::vector<std::vector<int>> neighbours_;  // within the slice
   std::vector<std::size_t> place_;            // in its slice
+  bool are_groups_coupled_ = false;
   EliminationOrder order_;
 };
 

@@ -80,8 +80,10 @@ struct MinimizerOptions {
   double function_tolerance = 1e-6;  ///< relative change of cost
   double gradient_tolerance = 1e-12;
   double parameter_tolerance = 1e-10;
-  /// StructuredMinimizer only: a track that a step makes worse stays where it was and is damped
-  /// more from then on, while the rest goes on. Else the whole step is taken or not, as Ceres does.
+  /// StructuredMinimizer only. A track that a step makes worse stays where it was and is damped
+  /// more from then on, while the rest goes on; and what follows its linearization well is not
+  /// linearized and eliminated again (see StructuredMinimizer). Else the whole step is taken or
+  /// not, and everything is linearized anew, as Ceres does.
   bool steps_by_track = false;
 };
 struct MinimizerSummary {

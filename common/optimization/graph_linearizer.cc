@@ -30,13 +30,13 @@ Weighted ApplyLoss(const ceres::LossFunction* loss, const double* residuals, int
 }  // namespace
 
 GraphLinearizer::GraphLinearizer(const FactorGraph& graph, const std::vector<int>& order,
-                                 const std::vector<int>& group_begins, BlockMatrix* H)
+                                 BlockMatrix* H)
     : graph_(graph), H_(H) {
-  const int num_groups = static_cast<int>(group_begins.size()) - 1;
+  const int num_groups = H->num_groups();
   std::vector<int> place_of(graph.blocks().size(), kConstant);
   std::vector<int> group_of(graph.blocks().size(), num_groups - 1);
   for (int group = 0; group < num_groups; ++group) {
-    for (int i = group_begins[group]; i < group_begins[group + 1]; ++i) {
+    for (int i = H->group_begin(group); i < H->group_begin(group + 1); ++i) {
       place_of[order[i]] = i;
       group_of[order[i]] = group;
     }
@@ -52,11 +52,15 @@ GraphLinearizer::GraphLinearizer(const FactorGraph& graph, const std::vector<int
   terms_.reserve(graph.factors().size());
   for (int group = 0; group < num_groups; ++group) {
     for (const int factor : factors[group]) {
-      terms_.push_back(MakeTerm(factor, place_of));
-      terms_.back().group = group;
+      terms_.push_back(MakeTerm(factor, group, place_of));
     }
   }
   FindTermBegins(num_groups);
+}
+
+int GraphLinearizer::ShareBegin(int group) const {
+  if (group == H_->num_groups() - 1) return H_->first_pose_scalar();
+  return H_->num_scalars() + group * H_->num_pose_scalars();
 }
 
 void GraphLinearizer::FindTermBegins(int num_groups) {
@@ -67,12 +71,14 @@ void GraphLinearizer::FindTermBegins(int num_groups) {
   }
 }
 
-GraphLinearizer::Term GraphLinearizer::MakeTerm(int index, const std::vector<int>& place_of) {
+GraphLinearizer::Term GraphLinearizer::MakeTerm(int index, int group,
+                                                const std::vector<int>& place_of) {
   const FactorGraph::Factor& factor = graph_.factors()[index];
   Term term;
   term.cost = factor.cost.get();
   term.loss = factor.loss;
   term.factor = index;
+  term.group = group;
   term.num_residuals = factor.cost->num_residuals();
   term.num_blocks = factor.num_blocks;
   AIRDOS_CHECK(term.num_residuals <= FactorGraph::kMaxResiduals);
@@ -84,7 +90,13 @@ GraphLinearizer::Term GraphLinearizer::MakeTerm(int index, const std::vector<int
     term.values[i] = block.values;
     term.sizes[i] = block.size;
     term.dims[i] = block.tangent_size();
-    term.columns[i] = block.is_constant ? kConstant : H_->begin(places[i]);
+    if (block.is_constant) {
+      term.columns[i] = kConstant;
+    } else if (block.kind == FactorGraph::Kind::kPose) {
+      term.columns[i] = ShareBegin(group) + H_->begin(places[i]) - H_->first_pose_scalar();
+    } else {
+      term.columns[i] = H_->begin(places[i]);
+    }
   }
   for (int i = 0; i < factor.num_blocks; ++i) {
     for (int j = 0; j < factor.num_blocks; ++j) {
@@ -93,7 +105,7 @@ GraphLinearizer::Term GraphLinearizer::MakeTerm(int index, const std::vector<int
       if (places[i] == kConstant || !is_upper) continue;
       term.products[term.num_products++] = {
           static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j),
-          H_->Offset(places[i], places[j]),
+          H_->Offset(places[i], places[j], group),
           FindAddProduct(term.num_residuals, term.dims[i], term.dims[j])};
     }
   }
@@ -130,15 +142,18 @@ double GraphLinearizer::Cost(int group) const {
   return 0.5 * cost;
 }
 
-double GraphLinearizer::Linearize(Eigen::VectorXd* gradient) {
+double GraphLinearizer::Linearize(int group, Eigen::VectorXd* gradient) {
   constexpr int kMaxJacobian = FactorGraph::kMaxResiduals * kPoseBlockSize;
-  H_->SetZero();
-  gradient->setZero();
+  H_->SetZero(group);
+  const int begin = H_->begin(H_->group_begin(group));
+  gradient->segment(begin, H_->begin(H_->group_begin(group + 1)) - begin).setZero();
+  gradient->segment(ShareBegin(group), H_->num_pose_scalars()).setZero();
   double* const H = H_->values();
   double cost = 0;
   std::array<double, FactorGraph::kMaxResiduals> residuals = {};
   std::array<std::array<double, kMaxJacobian>, kMaxBlocks> J = {};
-  for (const Term& term : terms_) {
+  for (std::size_t t = term_begins_[group]; t < term_begins_[group + 1]; ++t) {
+    const Term& term = terms_[t];
     std::array<double*, kMaxBlocks> jacobians = {};
     for (int i = 0; i < term.num_blocks; ++i) {
       if (term.columns[i] != kConstant) jacobians[i] = J[i].data();

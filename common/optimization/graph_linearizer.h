@@ -17,11 +17,10 @@ namespace airdos {
 /// are concave in the squared error (Huber's is; others are not let in).
 class GraphLinearizer {
  public:
-  /// `order`: the block of the graph behind each block of H; `group_begins`: first such block of
-  /// each group, and the number of blocks. A factor belongs to the first group that it touches.
-  /// Makes the blocks of H that the factors need. Both graph and H must outlive this.
-  GraphLinearizer(const FactorGraph& graph, const std::vector<int>& order,
-                  const std::vector<int>& group_begins, BlockMatrix* H);
+  /// `order`: the block of the graph behind each block of H. A factor belongs to the first group of
+  /// H that it touches, and speaks in that layer. Makes the blocks of H that the factors need. Both
+  /// graph and H must outlive this.
+  GraphLinearizer(const FactorGraph& graph, const std::vector<int>& order, BlockMatrix* H);
 
   /// Leaves out factors that were removed since.
   void DropRemovedFactors();
@@ -31,8 +30,9 @@ class GraphLinearizer {
   double Cost(int group) const;
   /// Likewise, of all other factors.
   double FixedCost() const;
-  /// Of all groups, with H and the gradient.
-  double Linearize(Eigen::VectorXd* gradient);
+  /// The same, with the group's layer of H and its part of the gradient, which is laid out as
+  /// BlockElimination wants its right sides: each group has a share of the poses'.
+  double Linearize(int group, Eigen::VectorXd* gradient);
 
  private:
   static constexpr std::size_t kMaxBlocks = FactorGraph::kMaxBlocks;
@@ -57,7 +57,9 @@ class GraphLinearizer {
     std::array<Product, kMaxPairs> products = {};
   };
 
-  Term MakeTerm(int factor, const std::vector<int>& place_of);
+  Term MakeTerm(int factor, int group, const std::vector<int>& place_of);
+  /// Where the group's part of the poses' gradient begins.
+  int ShareBegin(int group) const;
   void FindTermBegins(int num_groups);
 
   const FactorGraph& graph_;

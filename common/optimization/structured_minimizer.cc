@@ -15,7 +15,9 @@ constexpr double kMinRadius = 1e-32;
 constexpr double kMinDiagonal = 1e-6;
 constexpr double kMaxDiagonal = 1e32;
 constexpr double kMinQuality = 1e-3;  // of a step that is taken
-constexpr int kMaxInvalidSteps = 5;   // in a row
+// Ours. A group stays linearized where its cost followed the prediction to this many tolerances.
+constexpr double kKeptTolerance = 100;
+constexpr int kMaxInvalidSteps = 5;  // in a row
 
 std::vector<int> Flatten(const std::vector<std::vector<int>>& fronts) {
   std::vector<int> flat;
@@ -42,17 +44,21 @@ StructuredMinimizer::StructuredMinimizer(FactorGraph* graph) : graph_(graph) {
   for (const int front : elimination_order.group_begins) {
     group_begins_.push_back(front_begins[front]);
   }
-  H_.emplace(dims);
-  linearizer_.emplace(*graph, order_, group_begins_, &*H_);
+  H_.emplace(dims, group_begins_);
+  linearizer_.emplace(*graph, order_, &*H_);
   elimination_.emplace(*H_, front_begins, elimination_order.group_begins);
   value_begins_.push_back(num_values);
   saved_.resize(num_values);
   for (auto* values : {&costs_, &new_costs_, &caution_, &caution_step_}) {
     values->resize(group_begins_.size() - 1);
   }
-  for (Eigen::VectorXd* vector : {&gradient_, &diagonal_, &scale_, &damping_, &step_}) {
+  for (Eigen::VectorXd* vector : {&diagonal_, &scale_, &damping_}) {
     vector->setZero(H_->num_scalars());
   }
+  for (Eigen::VectorXd* vector : {&gradient_, &step_}) {
+    vector->setZero(elimination_->vector_size());
+  }
+  is_kept_.resize(num_groups());
 }
 
 void StructuredMinimizer::TrustRegion::Accept(double quality) {
@@ -63,14 +69,6 @@ void StructuredMinimizer::TrustRegion::Accept(double quality) {
 void StructuredMinimizer::TrustRegion::Reject() {
   radius /= decrease_factor;
   decrease_factor *= 2;
-}
-
-void StructuredMinimizer::ReadDiagonal() {
-  for (int block = 0; block < H_->num_blocks(); ++block) {
-    const int dim = H_->dim(block);
-    const double* const values = H_->values() + H_->diagonal_offset(block);
-    for (int i = 0; i < dim; ++i) diagonal_[H_->begin(block) + i] = values[i * (dim + 1)];
-  }
 }
 
 /// Ceres damps the diagonal of the Hessian of scaled unknowns; the scale is that of the start.
@@ -84,15 +82,95 @@ void StructuredMinimizer::SetDamping(double radius) {
   }
 }
 
+double StructuredMinimizer::Linearize() {
+  double sum = 0;
+  for (int group = 0; group < num_groups(); ++group) {
+    if (!is_kept_[group]) costs_[group] = linearizer_->Linearize(group, &gradient_);
+    sum += costs_[group];
+  }
+  H_->ReadDiagonal(&diagonal_);
+  return sum;
+}
+
+double StructuredMinimizer::MaxGradient() const {
+  double largest = 0;
+  const int num_poses = H_->num_pose_scalars();
+  Eigen::VectorXd::ConstSegmentReturnType own = gradient_.segment(0, H_->first_pose_scalar());
+  largest = own.size() > 0 ? own.lpNorm<Eigen::Infinity>() : 0;
+  for (int i = 0; i < num_poses; ++i) {
+    double sum = gradient_[H_->first_pose_scalar() + i];
+    for (int group = 0; group + 1 < num_groups(); ++group) {
+      sum += gradient_[elimination_->share_begin(group) + i];
+    }
+    largest = std::max(largest, std::abs(sum));
+  }
+  return largest;
+}
+
 /// Returns false where the step is of no use.
 bool StructuredMinimizer::ComputeStep() {
-  if (!elimination_->Factorise(*H_, damping_)) return false;
-  step_ = -gradient_;
-  elimination_->Solve(&step_);
-  // With (H + D) d = -g the model's change -(g d + d H d / 2) is this.
-  model_cost_change_ =
-      0.5 * (step_.array() * (damping_.array() * step_.array() - gradient_.array())).sum();
+  const int poses = H_->first_pose_scalar(), num_poses = H_->num_pose_scalars();
+  step_.segment(poses, num_poses) = -gradient_.segment(poses, num_poses);
+  double gain = 0;  // -(g d + d H d / 2) of the model; with (H + D) d = -g it is (d D d - g d) / 2
+  for (int group = 0; group + 1 < num_groups(); ++group) {
+    const int share = elimination_->share_begin(group);
+    if (is_kept_[group]) {
+      step_.segment(ScalarBegin(group), NumScalars(group)).setZero();
+      continue;
+    }
+    if (!elimination_->Eliminate(*H_, damping_, group)) return false;
+    step_.segment(ScalarBegin(group), NumScalars(group)) =
+        -gradient_.segment(ScalarBegin(group), NumScalars(group));
+    step_.segment(share, num_poses) = -gradient_.segment(share, num_poses);
+    elimination_->SolveForward(group, &step_);
+  }
+  if (!elimination_->FactorisePoses(*H_, damping_)) return false;
+  elimination_->SolveBackward(&step_);
+  const auto d_poses = step_.segment(poses, num_poses).array();
+  for (int group = 0; group + 1 < num_groups(); ++group) {
+    const int share = elimination_->share_begin(group);
+    if (is_kept_[group]) {
+      gain += (d_poses * step_.segment(share, num_poses).array()).sum();
+      continue;
+    }
+    const auto d = step_.segment(ScalarBegin(group), NumScalars(group)).array();
+    gain += (d * (damping_.segment(ScalarBegin(group), NumScalars(group)).array() * d -
+                  gradient_.segment(ScalarBegin(group), NumScalars(group)).array()))
+                .sum();
+    gain -= (d_poses * gradient_.segment(share, num_poses).array()).sum();
+  }
+  gain += (d_poses * (damping_.segment(poses, num_poses).array() * d_poses -
+                      gradient_.segment(poses, num_poses).array()))
+              .sum();
+  model_cost_change_ = 0.5 * gain;
   return std::isfinite(model_cost_change_) && model_cost_change_ > 0;
+}
+
+double StructuredMinimizer::PredictAndMoveShare(int group) {
+  const int poses = H_->first_pose_scalar(), num_poses = H_->num_pose_scalars();
+  const int share = elimination_->share_begin(group);
+  const auto d_poses = step_.segment(poses, num_poses);
+  double gain = 0;
+  if (is_kept_[group]) {
+    gain += d_poses.dot(step_.segment(share, num_poses));
+  } else {
+    const auto d = step_.segment(ScalarBegin(group), NumScalars(group)).array();
+    gain += (d * (damping_.segment(ScalarBegin(group), NumScalars(group)).array() * d -
+                  gradient_.segment(ScalarBegin(group), NumScalars(group)).array()))
+                .sum();
+    gain -= d_poses.dot(gradient_.segment(share, num_poses));
+  }
+  elimination_->MoveShare(group, step_, &step_);
+  return 0.5 * (gain + d_poses.dot(step_.segment(share, num_poses)));
+}
+
+void StructuredMinimizer::KeepPredictedGroups(double tolerance) {
+  for (int group = 0; group + 1 < num_groups(); ++group) {
+    const double predicted = PredictAndMoveShare(group);
+    const double fall = costs_[group] - new_costs_[group];
+    const double error = std::min(std::abs(fall), std::abs(fall - predicted));
+    is_kept_[group] = error <= tolerance * costs_[group] && caution_[group] == 1;
+  }
 }
 
 void StructuredMinimizer::SaveValues() {
@@ -175,28 +253,31 @@ StructuredMinimizer::Norms StructuredMinimizer::MeasureStep() const {
 
 MinimizerSummary StructuredMinimizer::Minimize(const MinimizerOptions& options) {
   linearizer_->DropRemovedFactors();
+  std::fill(caution_.begin(), caution_.end(), 1.0);
+  std::fill(caution_step_.begin(), caution_step_.end(), 2.0);
+  std::fill(is_kept_.begin(), is_kept_.end(), false);
   MinimizerSummary summary;
   const double fixed_cost = linearizer_->FixedCost();
-  double cost = linearizer_->Linearize(&gradient_);
+  double cost = Linearize();
   summary.initial_cost = summary.final_cost = fixed_cost + cost;
   if (!std::isfinite(summary.initial_cost)) {
     summary.initial_cost = summary.final_cost = 0;
     return summary;
-  }
-  ReadDiagonal();
-  std::fill(caution_.begin(), caution_.end(), 1.0);
-  std::fill(caution_step_.begin(), caution_step_.end(), 2.0);
-  if (options.steps_by_track) {
-    Evaluate();
-    costs_ = new_costs_;
   }
   scale_ = (1 + diagonal_.array().sqrt()).inverse();
   SaveValues();
   TrustRegion region;
   summary.num_iterations = 1;  // the start counts
   int num_invalid_steps = 0;
-  summary.has_converged = order_.empty() || Converged(options);
+  bool is_linearized = true;
+  summary.has_converged = order_.empty() || MaxGradient() <= options.gradient_tolerance;
   for (int i = 0; i < options.max_iterations && !summary.has_converged; ++i) {
+    if (!is_linearized) {
+      Linearize();
+      is_linearized = true;
+      summary.has_converged = MaxGradient() <= options.gradient_tolerance;
+      if (summary.has_converged) break;
+    }
     SetDamping(region.radius);
     if (!ComputeStep()) {
       if (++num_invalid_steps >= kMaxInvalidSteps) break;
@@ -226,28 +307,23 @@ MinimizerSummary StructuredMinimizer::Minimize(const MinimizerOptions& options) 
       continue;
     }
     region.Accept(quality);
+    if (options.steps_by_track) KeepPredictedGroups(kKeptTolerance * options.function_tolerance);
     SaveValues();
     costs_ = new_costs_;
-    cost = linearizer_->Linearize(&gradient_);
-    ReadDiagonal();
-    summary.has_converged = Converged(options);
+    cost = new_cost;
+    is_linearized = false;
   }
   summary.final_cost = fixed_cost + cost;
   return summary;
 }
 
-bool StructuredMinimizer::Converged(const MinimizerOptions& options) const {
-  return gradient_.lpNorm<Eigen::Infinity>() <= options.gradient_tolerance;
-}
-
 std::optional<Matrix6d> StructuredMinimizer::PoseCovariance(int block, double prior_sigma) {
-  linearizer_->DropRemovedFactors();
-  linearizer_->Linearize(&gradient_);
-  damping_.setConstant(1 / (prior_sigma * prior_sigma));
   const auto place = std::find(order_.begin(), order_.end(), block);
   if (place == order_.end()) {  // nothing says anything about it
     return Matrix6d(prior_sigma * prior_sigma * Matrix6d::Identity());
   }
+  LinearizeAll();
+  damping_.setConstant(1 / (prior_sigma * prior_sigma));
   if (!elimination_->Factorise(*H_, damping_)) return std::nullopt;
   const Matrix6d covariance =
       elimination_->InverseBlock(H_->begin(static_cast<int>(place - order_.begin())), 6);
@@ -255,14 +331,19 @@ std::optional<Matrix6d> StructuredMinimizer::PoseCovariance(int block, double pr
   return covariance;
 }
 
-std::optional<Eigen::VectorXd> StructuredMinimizer::LinearStep(const Eigen::VectorXd& damping) {
+void StructuredMinimizer::LinearizeAll() {
   linearizer_->DropRemovedFactors();
-  linearizer_->Linearize(&gradient_);
+  std::fill(is_kept_.begin(), is_kept_.end(), false);
+  Linearize();
+}
+
+std::optional<Eigen::VectorXd> StructuredMinimizer::LinearStep(const Eigen::VectorXd& damping) {
+  LinearizeAll();
   damping_ = damping;
   if (!elimination_->Factorise(*H_, damping_)) return std::nullopt;
   step_ = -gradient_;
   elimination_->Solve(&step_);
-  return step_;
+  return Eigen::VectorXd(step_.head(H_->num_scalars()));
 }
 
 }  // namespace airdos

@@ -40,6 +40,20 @@ namespace airdos {
 /// rounding: the same damping (Jacobi-scaled clamped diagonal), radius, tolerances and counting of
 /// iterations. An iteration allocates nothing; the result depends on the graph only, not on
 /// addresses.
+///
+/// With `steps_by_track` it parts from Ceres in two things, made for a window that is solved again
+/// with every frame and starts near its solution (warm):
+///  - A track (or the landmarks) whose cost a step makes worse is put back, if that lowers its
+///  cost,
+///    and damped more until its steps succeed. One joint on the kink of its segment's length then
+///    does not shrink the steps of all others.
+///  - A track whose cost followed the linear prediction, or hardly changed, keeps its linearization
+///    and its elimination. It has become a quadratic prior on the poses, S d = -r, of which only r
+///    moves on with them; its unknowns follow by back-substitution. Costs are always evaluated in
+///    full, so that no step is taken that raises the cost, and the stop is decided by the true
+///    cost.
+/// What leaves the window is fixed, not marginalised: as key frames that hold the landmarks
+/// (WindowMap), and as known segment lengths of people (HumanTracks).
 class StructuredMinimizer {
  public:
   /// The graph is not owned and must outlive this; blocks and factors must not be added later.
@@ -75,7 +89,12 @@ class StructuredMinimizer {
   };
 
   int num_groups() const { return linearizer_->num_groups(); }
-  void ReadDiagonal();
+  int ScalarBegin(int group) const { return H_->begin(group_begins_[group]); }
+  int NumScalars(int group) const { return ScalarBegin(group + 1) - ScalarBegin(group); }
+  /// All groups but those that are kept. Returns the cost.
+  double Linearize();
+  void LinearizeAll();
+  double MaxGradient() const;
   void SetDamping(double radius);
   bool ComputeStep();
   void SaveValues();
@@ -88,8 +107,12 @@ class StructuredMinimizer {
   /// A group's values in the graph: the saved ones moved by the step.
   void ApplyStep(int group);
   Norms MeasureStep() const;
-  /// By the gradient.
-  bool Converged(const MinimizerOptions& options) const;
+  /// After a step: by how much the group's cost should have fallen. Its unknowns are now where its
+  /// own equations want them, and its share of the poses' equations follows these.
+  double PredictAndMoveShare(int group);
+  /// Groups that did so but for this share of their cost are not linearized and eliminated again:
+  /// in the next steps they are a quadratic prior on the poses, which their unknowns follow.
+  void KeepPredictedGroups(double tolerance);
 
   FactorGraph* graph_;
   std::vector<int> order_;
@@ -103,6 +126,7 @@ class StructuredMinimizer {
   // Landmarks, each track, poses: first block, value in saved_ and scalar; cost; extra damping.
   std::vector<int> group_begins_;
   std::vector<std::size_t> value_begins_;
+  std::vector<char> is_kept_;
   std::vector<double> costs_, new_costs_, caution_, caution_step_;
   double model_cost_change_ = 0;
 };
