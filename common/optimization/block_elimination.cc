@@ -213,16 +213,23 @@ class BlockElimination::Analysis {
 };
 
 BlockElimination::BlockElimination(const BlockMatrix& H, const std::vector<int>& front_begins,
-                                   const std::vector<int>& group_begins)
+                                   const std::vector<int>& group_begins,
+                                   std::vector<double>* memory)
     : num_scalars_(H.num_scalars()),
       num_pose_scalars_(H.num_pose_scalars()),
-      group_begins_(group_begins) {
+      group_begins_(group_begins),
+      memory_(memory) {
   AIRDOS_CHECK(num_groups() == H.num_groups());
   const Analysis analysis(H, front_begins, this);
+  if (memory_ != nullptr) panels_.swap(*memory_);
   panels_.resize(analysis.num_values());
   int largest = 0;
   for (const Front& front : fronts_) largest = std::max(largest, front.width);
   gathered_.resize(largest);
+}
+
+BlockElimination::~BlockElimination() {
+  if (memory_ != nullptr) memory_->swap(panels_);
 }
 
 bool BlockElimination::Eliminate(const BlockMatrix& H, const Eigen::VectorXd& D, int group) {

@@ -28,8 +28,12 @@ class BlockElimination {
  public:
   /// `front_begins`: first block of each front, and the number of blocks. `group_begins`: first
   /// front of each group of H, and the number of fronts. H is looked at for its pattern only.
+  /// `memory` (or null) lends its capacity, and must outlive this.
   BlockElimination(const BlockMatrix& H, const std::vector<int>& front_begins,
-                   const std::vector<int>& group_begins);
+                   const std::vector<int>& group_begins, std::vector<double>* memory);
+  ~BlockElimination();
+  BlockElimination(const BlockElimination&) = delete;
+  BlockElimination& operator=(const BlockElimination&) = delete;
 
   int num_groups() const { return static_cast<int>(group_begins_.size()) - 1; }
   /// Right sides and solutions: first the scalars of H, those of the last group being the poses'
@@ -107,6 +111,7 @@ class BlockElimination {
   const Front* poses_ = nullptr;  // the last front; null: none
   std::vector<double> panels_;    // of all fronts, then the groups' shares of the last one's
   int shares_offset_ = 0;
+  std::vector<double>* memory_;           // or null; gets panels_ back
   mutable std::vector<double> gathered_;  // of a right side, for one front
 };
 

@@ -13,13 +13,13 @@ namespace {
 /// Solves the graph as it is now, and again after factors were removed from it.
 class Minimizer {
  public:
-  Minimizer(const BundleOptions& bundle, FactorGraph* graph) {
+  Minimizer(const BundleOptions& bundle, FactorGraph* graph, std::vector<double>* memory) {
     options_.function_tolerance = bundle.function_tolerance;
     options_.steps_by_track = bundle.steps_by_track;
     if (bundle.solver == BundleSolver::kCeres) {
       minimizer_.emplace<CeresMinimizer>(graph);
     } else {
-      minimizer_.emplace<StructuredMinimizer>(graph);
+      minimizer_.emplace<StructuredMinimizer>(graph, memory);
     }
   }
 
@@ -43,14 +43,15 @@ class Minimizer {
 
 }  // namespace
 
-BundleSummary SolveBundle(const BundleOptions& options, BundleProblem* problem) {
+BundleSummary SolveBundle(const BundleOptions& options, BundleProblem* problem,
+                          std::vector<double>* memory) {
   for (BundleProblem::Human& human : problem->humans) {
     human.motions.clear();
     human.num_rigidity_eliminated = 0;
     human.num_motion_eliminated = 0;
   }
   BundleGraph graph(options, problem);
-  Minimizer minimizer(options, graph.factor_graph());
+  Minimizer minimizer(options, graph.factor_graph(), memory);
   const MinimizerSummary first = minimizer.Minimize(options.max_iterations);
   MinimizerSummary last = first;
   if (options.max_iterations_after_elimination > 0 && graph.Eliminate() > 0) {

@@ -2,6 +2,7 @@
 #define AIRDOS_COMMON_OPTIMIZATION_BUNDLE_ADJUSTER_H_
 
 #include <optional>
+#include <vector>
 
 #include "common/optimization/bundle_problem.h"
 
@@ -70,8 +71,10 @@ struct BundleSummary {
 /// segment lengths and motions (paper, eq. 6): Levenberg-Marquardt, then elimination of factors
 /// with large errors, then Levenberg-Marquardt again. Overwrites the start values in `problem` with
 /// the result and marks eliminated factors. Frames that are fixed do not change. A problem without
-/// any free unknown comes back as it is. Deterministic: one thread, order of the vectors.
-BundleSummary SolveBundle(const BundleOptions& options, BundleProblem* problem);
+/// any free unknown comes back as it is. Deterministic: one thread, order of the vectors. `memory`
+/// (or null) carries no values from solve to solve, only its capacity.
+BundleSummary SolveBundle(const BundleOptions& options, BundleProblem* problem,
+                          std::vector<double>* memory = nullptr);
 
 }  // namespace airdos
 

@@ -92,7 +92,7 @@ std::vector<LandmarkId> SlidingWindowOptimizer::Adjust(const Prediction& predict
   BundleOptions options = options_.bundle;
   options.use_people = false;
   BundleSummary& summary = estimate->summary;
-  summary = SolveBundle(options, &without_people);
+  summary = SolveBundle(options, &without_people, &solver_memory_);
   estimate->covariance = summary.newest_covariance.value_or(UnobservedCovariance());
   estimate->num_static_landmarks = static_cast<int>(without_people.landmarks.size());
   estimate->num_static_observations = CountNewest(without_people);
@@ -113,7 +113,7 @@ std::vector<LandmarkId> SlidingWindowOptimizer::Adjust(const Prediction& predict
   if (!problem_.humans.empty()) {
     options = options_.bundle;
     options.compute_covariance = !is_static_strong;
-    const BundleSummary with_people = SolveBundle(options, &problem_);
+    const BundleSummary with_people = SolveBundle(options, &problem_, &solver_memory_);
     people_.Absorb(problem_);
     estimate->T_W_C_with_people = problem_.frames.back().T_W_C;
     estimate->trusts_people =

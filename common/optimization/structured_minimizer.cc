@@ -27,7 +27,8 @@ std::vector<int> Flatten(const std::vector<std::vector<int>>& fronts) {
 
 }  // namespace
 
-StructuredMinimizer::StructuredMinimizer(FactorGraph* graph) : graph_(graph) {
+StructuredMinimizer::StructuredMinimizer(FactorGraph* graph, std::vector<double>* memory)
+    : graph_(graph) {
   const EliminationOrder elimination_order = OrderForElimination(*graph);
   order_ = Flatten(elimination_order.fronts);
   std::vector<int> dims;
@@ -46,7 +47,7 @@ StructuredMinimizer::StructuredMinimizer(FactorGraph* graph) : graph_(graph) {
   }
   H_.emplace(dims, group_begins_);
   linearizer_.emplace(*graph, order_, &*H_);
-  elimination_.emplace(*H_, front_begins, elimination_order.group_begins);
+  elimination_.emplace(*H_, front_begins, elimination_order.group_begins, memory);
   value_begins_.push_back(num_values);
   saved_.resize(num_values);
   for (auto* values : {&costs_, &new_costs_, &caution_, &caution_step_}) {

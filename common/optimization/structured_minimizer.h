@@ -57,7 +57,9 @@ namespace airdos {
 class StructuredMinimizer {
  public:
   /// The graph is not owned and must outlive this; blocks and factors must not be added later.
-  explicit StructuredMinimizer(FactorGraph* graph);
+  /// `memory` (or null) lends its capacity: handed from solve to solve it saves the system the work
+  /// of clearing pages.
+  explicit StructuredMinimizer(FactorGraph* graph, std::vector<double>* memory = nullptr);
 
   /// Levenberg-Marquardt from the graph's values, which become the result. Where the cost at the
   /// start is not finite nothing moves.

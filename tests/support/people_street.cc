@@ -150,8 +150,15 @@ BundleProblem SlideWindow(const BundleOptions& solver, const PeopleStreetOptions
     for (std::size_t j = 0; j < human.joints.size(); ++j) {
       BundleProblem::JointState joint = human.joints[j];
       if (joint.frame == 0) continue;  // has left the people's window
-      joint.p_W = j < before.humans[i].joints.size() ? before.humans[i].joints[j].p_W
-                                                     : T_start_odometry * joint.p_W;
+      const std::vector<BundleProblem::JointState>& solved = before.humans[i].joints;
+      if (j < solved.size()) {
+        joint.p_W = solved[j].p_W;
+      } else {  // along its ray at the depth of the frame before
+        const Se3& T_W_C = problem.frames.back().T_W_C;
+        const Eigen::Vector3d p_C = T_W_C.inverse() * (T_start_odometry * joint.p_W);
+        const Eigen::Vector3d before_C = T_W_C.inverse() * solved[j - kNumJoints].p_W;
+        joint.p_W = T_W_C * Eigen::Vector3d(p_C * before_C.z() / p_C.z());
+      }
       joints.push_back(joint);
     }
     human.joints = std::move(joints);

@@ -25,7 +25,8 @@ struct PeopleStreetOptions {
 BundleProblem MakePeopleStreet(const PeopleStreetOptions& options);
 
 /// The window of one frame later: what is in both is as `solver` left it, frame 0 stays as a fixed
-/// key frame for the landmarks, the new frame starts by odometry and triangulation.
+/// key frame for the landmarks; the new frame starts by odometry, its joints at the depth of the
+/// frame before.
 BundleProblem SlideWindow(const BundleOptions& solver, const PeopleStreetOptions& options);
 
 }  // namespace airdos
