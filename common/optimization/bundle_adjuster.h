@@ -24,7 +24,7 @@ struct BundleOptions {
   bool steps_by_track = true;  ///< kStructured: see MinimizerOptions; if false, steps as Ceres'
   int max_iterations = 6;      ///< of the first pass
   int max_iterations_after_elimination = 4;  ///< of the pass after elimination; 0: no elimination
-  double function_tolerance = 1e-5;          ///< relative change of cost that ends a pass
+  double function_tolerance = 1e-4;          ///< relative change of cost that ends a pass
 
   // Huber kernels, in standard deviations of the residual's norm.
   double huber_static = 2.5;

@@ -112,9 +112,11 @@ GraphLinearizer::Term GraphLinearizer::MakeTerm(int index, int group,
   return term;
 }
 
-void GraphLinearizer::DropRemovedFactors() {
-  const auto is_removed = [this](const Term& term) {
-    return graph_.factors()[term.factor].is_removed;
+void GraphLinearizer::DropRemovedFactors(std::vector<char>* is_whole) {
+  const auto is_removed = [&](const Term& term) {
+    if (!graph_.factors()[term.factor].is_removed) return false;
+    (*is_whole)[term.group] = false;
+    return true;
   };
   terms_.erase(std::remove_if(terms_.begin(), terms_.end(), is_removed), terms_.end());
   FindTermBegins(num_groups());

@@ -22,8 +22,8 @@ class GraphLinearizer {
   /// graph and H must outlive this.
   GraphLinearizer(const FactorGraph& graph, const std::vector<int>& order, BlockMatrix* H);
 
-  /// Leaves out factors that were removed since.
-  void DropRemovedFactors();
+  /// Leaves out factors that were removed since, and clears the flag of the groups that lost any.
+  void DropRemovedFactors(std::vector<char>* is_whole);
   int num_groups() const { return static_cast<int>(term_begins_.size()) - 1; }
   /// 1/2 sum loss(|r|^2) of a group's factors at the graph's values; not finite where a factor
   /// cannot be evaluated.

@@ -253,10 +253,10 @@ StructuredMinimizer::Norms StructuredMinimizer::MeasureStep() const {
 }
 
 MinimizerSummary StructuredMinimizer::Minimize(const MinimizerOptions& options) {
-  linearizer_->DropRemovedFactors();
+  if (!options.steps_by_track) std::fill(is_kept_.begin(), is_kept_.end(), false);
+  linearizer_->DropRemovedFactors(&is_kept_);
   std::fill(caution_.begin(), caution_.end(), 1.0);
   std::fill(caution_step_.begin(), caution_step_.end(), 2.0);
-  std::fill(is_kept_.begin(), is_kept_.end(), false);
   MinimizerSummary summary;
   const double fixed_cost = linearizer_->FixedCost();
   double cost = Linearize();
@@ -333,7 +333,7 @@ std::optional<Matrix6d> StructuredMinimizer::PoseCovariance(int block, double pr
 }
 
 void StructuredMinimizer::LinearizeAll() {
-  linearizer_->DropRemovedFactors();
+  linearizer_->DropRemovedFactors(&is_kept_);
   std::fill(is_kept_.begin(), is_kept_.end(), false);
   Linearize();
 }

@@ -62,7 +62,8 @@ class StructuredMinimizer {
   explicit StructuredMinimizer(FactorGraph* graph, std::vector<double>* memory = nullptr);
 
   /// Levenberg-Marquardt from the graph's values, which become the result. Where the cost at the
-  /// start is not finite nothing moves.
+  /// start is not finite nothing moves. From one call to the next factors may be removed, but
+  /// values must stay as they are.
   MinimizerSummary Minimize(const MinimizerOptions& options);
 
   /// Marginal covariance of a free pose at the graph's values: of the inverse Gauss-Newton Hessian
