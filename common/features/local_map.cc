@@ -5,7 +5,8 @@
 namespace airdos {
 
 LandmarkId LocalMap::Add(LocalLandmark landmark) {
-  const LandmarkId id{next_id_++};
+  const LandmarkId id = next_id_;
+  ++next_id_.value;
   landmarks_.emplace(id, std::move(landmark));
   return id;
 }

@@ -56,7 +56,8 @@ struct MapCorrection {
 /// The landmarks against which frames are tracked, and the poses of the recent frames.
 class LocalMap {
  public:
-  explicit LocalMap(const LocalMapOptions& options) : options_(options) {}
+  explicit LocalMap(const LocalMapOptions& options, LandmarkId first_id = {1})
+      : options_(options), next_id_(first_id) {}
 
   std::map<LandmarkId, LocalLandmark>& landmarks() { return landmarks_; }
   const std::map<LandmarkId, LocalLandmark>& landmarks() const { return landmarks_; }
@@ -83,7 +84,7 @@ class LocalMap {
   static constexpr int kMaxPoses = 64;
 
   LocalMapOptions options_;
-  std::int64_t next_id_ = 1;
+  LandmarkId next_id_;
   std::map<LandmarkId, LocalLandmark> landmarks_;
   std::map<FrameId, Se3> poses_;
 };

@@ -89,10 +89,11 @@ struct OdometryFrame {
 /// the camera sees them says where the camera is, as far as they can be relied on.
 class VisualOdometry {
  public:
-  explicit VisualOdometry(const VisualOdometryOptions& options)
+  /// Landmarks are numbered from `first_id` on.
+  explicit VisualOdometry(const VisualOdometryOptions& options, LandmarkId first_id = {1})
       : options_(options),
         extractor_(options.extractor),
-        map_(options.map),
+        map_(options.map, first_id),
         motion_(options.motion),
         people_(options.people) {}
 

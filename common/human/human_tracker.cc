@@ -18,8 +18,8 @@ struct HumanTracker::Observation {
   SideSwap right_swap = SideSwap::kNone;  // by which the right one was made to agree
 };
 
-HumanTracker::HumanTracker(const HumanTrackerOptions& options)
-    : options_(options), flow_(options.flow) {}
+HumanTracker::HumanTracker(const HumanTrackerOptions& options, HumanId first_id)
+    : options_(options), flow_(options.flow), next_id_(first_id) {}
 
 TrackedFrame HumanTracker::Process(const StereoCamera& camera, const PeopleFrame& frame) {
   const StereoImages images{frame.left_gray, frame.right_gray};

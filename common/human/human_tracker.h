@@ -56,7 +56,8 @@ struct TrackedFrame {
 /// knows nothing of the camera's pose. The same frames always give the same result.
 class HumanTracker {
  public:
-  explicit HumanTracker(const HumanTrackerOptions& options);
+  /// People are numbered from `first_id` on.
+  explicit HumanTracker(const HumanTrackerOptions& options, HumanId first_id = {1});
 
   TrackedFrame Process(const StereoCamera& camera, const PeopleFrame& frame);
 
@@ -85,7 +86,7 @@ class HumanTracker {
   ImageFlow flow_;
   std::vector<HumanTrack> tracks_;                      // sorted by id
   Eigen::Vector2d shift_px_ = Eigen::Vector2d::Zero();  // of the image since the last frame
-  HumanId next_id_{1};
+  HumanId next_id_;
 };
 
 }  // namespace airdos

@@ -36,10 +36,14 @@ struct HumanObservation {
 struct FrameInput {
   FrameId id;
   double time_s = 0;
-  /// The front end's pose in its odometry frame O, which is never corrected. That of the first
-  /// frame defines W; after it only the change from frame to frame is used. Nothing where the front
-  /// end said nothing.
+  /// The front end's pose in its odometry frame O, which is never corrected: only the change from
+  /// frame to frame is used. Nothing where the front end said nothing.
   std::optional<Se3> T_O_C;
+  /// First frame of O: poses in different O cannot be compared (the front end was started again).
+  FrameId odometry_start;
+  /// The front end's pose in W as it knows it from earlier answers. Used in the first frame only,
+  /// which it ties to W; without it T_O_C does.
+  std::optional<Se3> T_W_C;
   /// By how much constant velocity may be wrong in this frame, as the front end has learnt of its
   /// carrier: standard deviation per axis of the pose. Nothing if it did not say.
   std::optional<double> motion_sigma_position_m;

@@ -61,12 +61,13 @@ FrameResult SlidingWindowOptimizer::Process(const FrameInput& input) {
   LearnCarrier(input);
   Prediction prediction;
   if (!is_first) prediction = Predict(input);
-  const Se3 T_W_C_start =
-      is_first ? input.T_O_C.value_or(Se3()) : PoseOf(prediction.base) * prediction.T_Cbase_C;
+  const Se3 T_W_C_start = is_first ? input.T_W_C.value_or(input.T_O_C.value_or(Se3()))
+                                   : PoseOf(prediction.base) * prediction.T_Cbase_C;
   map_.AddFrame(camera_, input, T_W_C_start);
   if (options_.bundle.use_people) people_.AddFrame(camera_, input);
   if (input.T_O_C) {
     odometry_frame_ = input.id;
+    odometry_start_ = input.odometry_start;
     T_O_C_ = input.T_O_C;
   }
 
@@ -163,7 +164,7 @@ SlidingWindowOptimizer::Prediction SlidingWindowOptimizer::Predict(const FrameIn
   const bool knows_base =
       std::any_of(trajectory_.begin(), trajectory_.end(),
                   [this](const TimedPose& entry) { return entry.id == odometry_frame_; });
-  if (input.T_O_C && T_O_C_ && knows_base) {
+  if (input.T_O_C && T_O_C_ && knows_base && input.odometry_start == odometry_start_) {
     return {odometry_frame_, T_O_C_->inverse() * *input.T_O_C};
   }
   const TimedPose& last = trajectory_.back();

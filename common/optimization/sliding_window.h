@@ -83,8 +83,9 @@ struct FrameResult {
 /// always come from the adjustment with people, relative to its camera.
 ///
 /// The newest frame starts at the last optimized pose moved by the front end's odometry; a frame
-/// without odometry at constant velocity. A frame that sees no static landmark of the map keeps
-/// that start as its answer (kPredicted) unless people carry it.
+/// without odometry, or the first one of a front end that was started again, at constant velocity.
+/// A frame that sees no static landmark of the map keeps that start as its answer (kPredicted)
+/// unless people carry it.
 class SlidingWindowOptimizer {
  public:
   SlidingWindowOptimizer(const SlidingWindowOptions& options, const StereoCamera& camera);
@@ -128,10 +129,10 @@ class SlidingWindowOptimizer {
   StereoCamera camera_;
   WindowMap map_;
   HumanTracks people_;
-  BundleProblem problem_;              // the last one with people
-  std::vector<double> solver_memory_;  // no values: capacity for the next solve
-  std::deque<TimedPose> trajectory_;   // the last frames, oldest first, as optimized
-  FrameId odometry_frame_;             // the last one with odometry
+  BundleProblem problem_;             // the last one with people
+  std::deque<TimedPose> trajectory_;  // the last frames, oldest first, as optimized
+  FrameId odometry_frame_;            // the last one with odometry
+  FrameId odometry_start_;            // of its O
   std::optional<Se3> T_O_C_;
   std::optional<AccelerationSigma> carrier_;  // how the front end says that the camera moves
 };

@@ -25,13 +25,16 @@ std::int8_t ToMessage(TrackingState state) {
   return static_features_t::STATE_INVALID;
 }
 
-static_features_t ToMessage(const Header& header, const OdometryFrame& frame) {
+static_features_t ToMessage(const Header& header, std::int64_t odometry_start_seq,
+                            const OdometryFrame& frame) {
   static_features_t message;
   message.utime = header.utime;
   message.seq = header.seq;
   message.session = header.session;
   message.tracking_state = ToMessage(frame.state);
   FromSe3(frame.T_O_C, message.position_O_C, message.orientation_O_C);
+  message.odometry_start_seq = odometry_start_seq;
+  FromSe3(frame.T_W_C, message.position_W_C, message.orientation_W_C);
   message.sigma_position_m = frame.prior_sigma_position_m;
   message.sigma_orientation_rad = frame.prior_sigma_orientation_rad;
   message.num_detected = frame.num_detected;
@@ -112,7 +115,9 @@ std::vector<std::string> FrontendNode::MissingFeedback(const Header& header) con
 }
 
 void FrontendNode::StartSession(const Header& header) {
-  odometry_ = std::make_unique<VisualOdometry>(options_.odometry);
+  constexpr std::int64_t kMostPerFrame = 1000000;  // more than an image has corners
+  odometry_ = std::make_unique<VisualOdometry>(
+      options_.odometry, LandmarkId{FirstRunningNumber(header.seq, kMostPerFrame)});
   first_ = header;
   session_ = header.session;
   published_.clear();
@@ -125,6 +130,11 @@ void FrontendNode::ApplyUpdates() {
   const std::optional<std::int64_t> required = RequiredUpdate();
   if (!required) return;
   if (newest_update_ < *required) is_feedback_silent_ = true;
+  const auto parts_of_required = updates_.find(*required);
+  const bool is_complete = parts_of_required != updates_.end() &&
+                           static_cast<std::int32_t>(parts_of_required->second.size()) ==
+                               parts_of_required->second.begin()->second.num_parts;
+  if (!is_complete) ++counters(channel::kMapUpdate).num_missing;
   while (!updates_.empty() && updates_.begin()->first <= *required) {
     const auto& [seq, parts] = *updates_.begin();
     MapCorrection correction;
@@ -202,7 +212,7 @@ void FrontendNode::ProcessFrame(const Header& header, FrontendInputs inputs) {
   const double time_s = static_cast<double>(header.utime - first_.utime) * 1e-6;
   const OdometryFrame frame = images ? odometry_->Process(camera(), *images)
                                      : odometry_->Coast(FrameId{header.seq}, time_s);
-  Publish(channel::kStaticFeatures, ToMessage(header, frame));
+  Publish(channel::kStaticFeatures, ToMessage(header, first_.seq, frame));
   published_.push_back(header.seq);
   if (published_.size() > static_cast<std::size_t>(std::max(options_.feedback_lag, 1))) {
     published_.erase(published_.begin());

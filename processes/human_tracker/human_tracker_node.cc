@@ -1,6 +1,7 @@
 #include "processes/human_tracker/human_tracker_node.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 #include <vector>
@@ -57,8 +58,10 @@ HumanTrackerNode::HumanTrackerNode(const HumanTrackerOptions& options)
   JoinCalibration();
 }
 
-void HumanTrackerNode::StartSession(const Header&) {
-  tracker_ = std::make_unique<HumanTracker>(options_);
+void HumanTrackerNode::StartSession(const Header& header) {
+  constexpr std::int64_t kMostPerFrame = 1000;  // Validate() lets 200 people an image pass
+  tracker_ = std::make_unique<HumanTracker>(options_,
+                                            HumanId{FirstRunningNumber(header.seq, kMostPerFrame)});
 }
 
 void HumanTrackerNode::ProcessFrame(const Header& header, HumanTrackerInputs inputs) {

@@ -17,6 +17,14 @@ Header HeaderOf(const Message& message) {
   return {message.utime, message.seq, message.session};
 }
 
+/// First of the running numbers (landmarks, people) that a process gives which hears a session from
+/// image `first_seq` on, if it makes fewer than `most_per_frame` of them in a frame: 1 at the start
+/// of a session. A process that was killed and started again so never uses a number that the one
+/// before gave, and the others still know.
+inline std::int64_t FirstRunningNumber(std::int64_t first_seq, std::int64_t most_per_frame) {
+  return 1 + first_seq * most_per_frame;
+}
+
 }  // namespace airdos
 
 #endif  // AIRDOS_PROCESSES_NODE_HEADER_H_

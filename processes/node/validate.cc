@@ -220,6 +220,10 @@ std::string Validate(const static_features_t& message) {
               static_features_t::STATE_COASTING);
   check.Position("position_O_C", message.position_O_C);
   check.Quaternion("orientation_O_C", message.orientation_O_C);
+  check.Range("odometry_start_seq", message.odometry_start_seq, 0,
+              static_cast<double>(message.seq));
+  check.Position("position_W_C", message.position_W_C);
+  check.Quaternion("orientation_W_C", message.orientation_W_C);
   check.Range("sigma_position_m", message.sigma_position_m, 0, kMaxLength_m);
   check.Range("sigma_orientation_rad", message.sigma_orientation_rad, 0, 1e3);
   check.Count("num_detected", message.num_detected, INT32_MAX);
@@ -250,7 +254,7 @@ std::string Validate(const human_observations_t& message) {
 
 std::string Validate(const state_estimate_t& message) {
   Checker check(message);
-  check.Range("status", message.status, state_estimate_t::STATUS_FIRST_FRAME,
+  check.Range("status", message.status, state_estimate_t::STATUS_INVALID,
               state_estimate_t::STATUS_PREDICTED);
   check.Range("trusted", message.trusted, state_estimate_t::TRUSTED_WITHOUT_PEOPLE,
               state_estimate_t::TRUSTED_WITH_PEOPLE);

@@ -29,6 +29,8 @@ void AddFeatures(const static_features_t& message, FrameInput* input) {
   const Se3 T_O_C = ToSe3(message.position_O_C, message.orientation_O_C);
   if (T_O_C.translation.allFinite() && T_O_C.rotation.coeffs().allFinite()) {
     input->T_O_C = T_O_C;
+    input->odometry_start.value = message.odometry_start_seq;
+    input->T_W_C = ToSe3(message.position_W_C, message.orientation_W_C);
   }
   if (message.sigma_position_m > 0 && message.sigma_orientation_rad > 0) {  // not NaN
     input->motion_sigma_position_m = message.sigma_position_m;
@@ -251,6 +253,14 @@ state_estimate_t ToStateEstimate(const Header& header, const FrameEstimate& esti
   message.num_iterations = summary.num_iterations;
   message.initial_cost = summary.initial_cost;
   message.final_cost = summary.final_cost;
+  return message;
+}
+
+state_estimate_t UnknownStateEstimate(const Header& header) {
+  FrameEstimate nothing;
+  nothing.covariance = kUnobservedSigma * kUnobservedSigma * Matrix6d::Identity();
+  state_estimate_t message = ToStateEstimate(header, nothing);
+  message.status = state_estimate_t::STATUS_INVALID;
   return message;
 }
 

@@ -21,6 +21,9 @@ FrameInput ToFrameInput(const Header& header, const StereoCamera& camera,
 
 state_estimate_t ToStateEstimate(const Header& header, const FrameEstimate& estimate);
 
+/// Of a frame for which there is no pose, since the front end has not been heard yet.
+state_estimate_t UnknownStateEstimate(const Header& header);
+
 /// At least one part; each encodes to less than 120 kB (README of lcmtypes: why).
 std::vector<map_update_t> ToMapUpdates(const Header& header, const MapChanges& changes);
 

@@ -16,6 +16,13 @@ OptimizerNode::OptimizerNode(const OptimizerOptions& options)
 void OptimizerNode::StartSession(const Header&) { window_.reset(); }
 
 void OptimizerNode::ProcessFrame(const Header& header, OptimizerInputs inputs) {
+  if (window_ == nullptr && !inputs.features) {
+    // Where W is only the front end can say: to begin at its origin would be another W when this
+    // process was started again in the middle.
+    Publish(channel::kStateEstimate, UnknownStateEstimate(header));
+    Publish(channel::kMapUpdate, ToMapUpdates(header, MapChanges()).front());
+    return;
+  }
   if (window_ == nullptr) {
     window_ = std::make_unique<SlidingWindowOptimizer>(options_.window, camera());
   }

@@ -19,7 +19,9 @@ struct OptimizerInputs {
 };
 
 /// STATIC_FEATURES and, with `people: on`, HUMAN_OBSERVATIONS in; STATE_ESTIMATE and MAP_UPDATE
-/// (one or more parts) out, for each frame once. A frame whose inputs never came is predicted.
+/// (one or more parts) out, for each frame once. A frame whose inputs never came is predicted; in
+/// frames before the first STATIC_FEATURES nothing is known (STATUS_INVALID). W is where the front
+/// end's first message has it, so that a process that was started again goes on in the same W.
 class OptimizerNode final : public FrameNode<OptimizerInputs> {
  public:
   explicit OptimizerNode(const OptimizerOptions& options);

@@ -81,6 +81,7 @@ Envelope StaticFeatures(const SimulationOptions& options, const CarrierSigma& ca
   message.tracking_state =
       header.seq == 0 ? +static_features_t::STATE_INITIALIZING : +static_features_t::STATE_TRACKING;
   FromSe3(frame.T_W_C_odometry, message.position_O_C, message.orientation_O_C);
+  FromSe3(frame.T_W_C_odometry, message.position_W_C, message.orientation_W_C);
   message.sigma_position_m = carrier.position_m;
   message.sigma_orientation_rad = carrier.orientation_rad;
   message.num_features = static_cast<std::int32_t>(frame.static_points.size());

@@ -32,6 +32,19 @@ TEST(FrontendNode, OneOutputForEachFrame) {
   EXPECT_EQ(node.num_pending(), 0u);
 }
 
+TEST(FrontendNode, StartedInMidSessionItReusesNoLandmarkAndSaysWhereItsOdometryStarts) {
+  FrontendNode node(WithoutFeedback());
+  Send(channel::kCalibration, Calibration(), &node);
+  for (int k = 3; k < 6; ++k) SendFrame(k, &node);
+  std::vector<static_features_t> output = StepAll(&node);
+  if (node.CompleteOldest()) output = Take(&node);  // nobody knows that frame 2 will not come
+  ASSERT_FALSE(output.empty());
+  EXPECT_EQ(output.back().odometry_start_seq, 3);
+  ASSERT_GT(output.back().num_features, 0);
+  EXPECT_GT(output.back().landmark_id.front(), 3000000);
+  EXPECT_LT(output.back().landmark_id.back(), 6000000);
+}
+
 TEST(FrontendNode, FramesWaitForTheCalibration) {
   FrontendNode node(WithoutFeedback());
   SendFrame(0, &node);

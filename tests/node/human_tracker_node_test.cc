@@ -109,6 +109,7 @@ TEST(HumanTrackerNode, ReportsAPersonWhereItIs) {
   EXPECT_EQ(messages[0].num_rejected, 0);
   ASSERT_EQ(messages[0].num_humans, 1);
   const human_observation_t& human = messages[0].humans[0];
+  EXPECT_EQ(human.track_id, 3001) << "those of frames 0 to 2 may be known to others";
   ASSERT_EQ(human.num_joints, kNumJoints);
   for (int i = 0; i < human.num_joints; ++i) {
     EXPECT_NEAR(human.z_C_m[static_cast<std::size_t>(i)], 5, 1e-3);

@@ -54,6 +54,7 @@ static_features_t Features(const FrameInput& input) {
   auto message = WithHeader<static_features_t>(input);
   message.tracking_state = +static_features_t::STATE_TRACKING;
   FromSe3(*input.T_O_C, message.position_O_C, message.orientation_O_C);
+  FromSe3(input.T_W_C.value_or(*input.T_O_C), message.position_W_C, message.orientation_W_C);
   message.sigma_position_m = 0.05;
   message.sigma_orientation_rad = 0.05;
   message.num_features = static_cast<std::int32_t>(input.features.size());
@@ -249,6 +250,62 @@ TEST(OptimizerNodeTest, AFrameWithoutFeaturesIsPredicted) {
   }
   EXPECT_EQ(estimates[9].status, +state_estimate_t::STATUS_CONVERGED);
   EXPECT_EQ(node->frames().num_incomplete, 3);
+}
+
+TEST(OptimizerNodeTest, AFrontEndThatWasStartedAgainGoesOnInTheSameWorld) {
+  const SyntheticScene scene = Scene(16);
+  constexpr std::size_t kRestart = 8;
+  const std::unique_ptr<Node> node = MakeNode("on");
+  std::vector<Envelope> output;
+  SendCalibration(scene, node.get());
+  for (const FrameInput& input : scene.frames) {
+    static_features_t features = Features(input);
+    if (input.id.value >= static_cast<std::int64_t>(kRestart)) {
+      const Se3 T_Onew_C = scene.frames[kRestart].T_O_C->inverse() * *input.T_O_C;
+      FromSe3(T_Onew_C, features.position_O_C, features.orientation_O_C);
+      FromSe3(T_Onew_C, features.position_W_C, features.orientation_W_C);
+      features.odometry_start_seq = kRestart;
+      for (std::int64_t& id : features.landmark_id) id += 1000000;
+    }
+    Send(channel::kStaticFeatures, features, node.get());
+    Send(channel::kHumanObservations, Humans(input, scene.camera), node.get());
+    Drain(node.get(), &output);
+  }
+  const auto estimates = Take<state_estimate_t>(output, channel::kStateEstimate);
+  ASSERT_EQ(estimates.size(), scene.frames.size());
+  for (std::size_t k = 0; k < estimates.size(); ++k) {
+    const Se3 T_W_C = ToSe3(estimates[k].position_W_C, estimates[k].orientation_W_C);
+    EXPECT_LT((T_W_C.translation - scene.T_W_C[k].translation).norm(), 0.05) << k;
+  }
+  EXPECT_EQ(estimates.back().status, +state_estimate_t::STATUS_CONVERGED);
+}
+
+TEST(OptimizerNodeTest, StartedAgainItGoesOnWhereTheFrontEndKnowsTheWorld) {
+  const SyntheticScene scene = Scene(16);
+  constexpr std::size_t kRestart = 6;
+  const std::unique_ptr<Node> node = MakeNode("on");
+  std::vector<Envelope> output;
+  SendCalibration(scene, node.get());
+  for (std::size_t k = kRestart; k < scene.frames.size(); ++k) {
+    FrameInput input = scene.frames[k];
+    input.T_W_C = scene.T_W_C[k];  // as earlier answers told it
+    const Se3 T_other_O = Boxplus(Se3(), Vector6d::Constant(0.3));
+    input.T_O_C = T_other_O * *input.T_O_C;
+    // Of its first frame it hears the human tracker only.
+    if (k > kRestart) Send(channel::kStaticFeatures, Features(input), node.get());
+    Send(channel::kHumanObservations, Humans(input, scene.camera), node.get());
+    Drain(node.get(), &output);
+  }
+  const auto estimates = Take<state_estimate_t>(output, channel::kStateEstimate);
+  ASSERT_EQ(estimates.size(), scene.frames.size() - kRestart);
+  EXPECT_EQ(estimates[0].status, +state_estimate_t::STATUS_INVALID);
+  EXPECT_EQ(Validate(estimates[0]), "");
+  EXPECT_EQ(estimates[1].status, +state_estimate_t::STATUS_FIRST_FRAME);
+  for (std::size_t i = 1; i < estimates.size(); ++i) {
+    const Se3 T_W_C = ToSe3(estimates[i].position_W_C, estimates[i].orientation_W_C);
+    EXPECT_LT((T_W_C.translation - scene.T_W_C[kRestart + i].translation).norm(), 0.05) << i;
+  }
+  EXPECT_EQ(Take<map_update_t>(output, channel::kMapUpdate).size(), estimates.size());
 }
 
 TEST(OptimizerNodeTest, EmptyFramesDoNotStopIt) {

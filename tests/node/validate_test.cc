@@ -96,6 +96,10 @@ TEST(ValidateTest, StaticFeatures) {
   ExpectReject<M>("position_O_C nan", [](M* m) { m->position_O_C[2] = kNan; });
   ExpectReject<M>("orientation_O_C 1.1", [](M* m) { m->orientation_O_C[0] = 1.1; });
   ExpectReject<M>("orientation_O_C nan", [](M* m) { m->orientation_O_C[0] = kNan; });
+  ExpectReject<M>("odometry_start_seq -1", [](M* m) { m->odometry_start_seq = -1; });
+  ExpectReject<M>("odometry_start_seq", [](M* m) { m->odometry_start_seq = m->seq + 1; });
+  ExpectReject<M>("position_W_C nan", [](M* m) { m->position_W_C[1] = kNan; });
+  ExpectReject<M>("orientation_W_C", [](M* m) { m->orientation_W_C[0] = 0; });
   ExpectReject<M>("sigma_position_m", [](M* m) { m->sigma_position_m = -1; });
   ExpectReject<M>("sigma_orientation_rad", [](M* m) { m->sigma_orientation_rad = kNan; });
   ExpectReject<M>("num_masked", [](M* m) { m->num_masked = -1; });

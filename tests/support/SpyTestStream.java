@@ -198,6 +198,7 @@ final class SpyTestStream {
     message.session = SESSION;
     message.tracking_state = static_features_t.STATE_TRACKING;
     message.orientation_O_C = UPRIGHT.clone();
+    message.orientation_W_C = UPRIGHT.clone();
     message.num_features = 60;
     message.landmark_id = new long[60];
     message.u_left_px = new float[60];

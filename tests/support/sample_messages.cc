@@ -101,6 +101,7 @@ static_features_t Sample<static_features_t>() {
   auto message = WithHeader<static_features_t>();
   message.tracking_state = static_features_t::STATE_TRACKING;
   message.orientation_O_C[0] = 1;
+  message.orientation_W_C[0] = 1;
   message.sigma_position_m = 0.04;
   message.sigma_orientation_rad = 0.05;
   message.num_features = 2;
