@@ -92,6 +92,19 @@ MapFileWriter::MapFileWriter(const std::string& path) : path_(path) {
   num_bytes_ = static_cast<std::int64_t>(kHeadBytes);
 }
 
+MapFileWriter::MapFileWriter(const std::string& path, std::int64_t num_bytes) : path_(path) {
+  AIRDOS_CHECK(num_bytes >= static_cast<std::int64_t>(kHeadBytes));
+  descriptor_ = open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor_ < 0) throw InputError(path + ": cannot be opened: " + std::strerror(errno));
+  if (ftruncate(descriptor_, num_bytes) != 0 ||
+      lseek(descriptor_, num_bytes, SEEK_SET) != num_bytes) {
+    const std::string why = std::strerror(errno);
+    close(descriptor_);
+    throw InputError(path + ": cannot be written: " + why);
+  }
+  num_bytes_ = num_bytes;
+}
+
 MapFileWriter::~MapFileWriter() { close(descriptor_); }
 
 void MapFileWriter::Append(const MapChunk& chunk) {

@@ -26,11 +26,14 @@ struct MapChunk {
   std::vector<std::uint8_t> bytes;
 };
 
-/// Appends chunks to a new file; an existing one is replaced.
+/// Appends chunks to a new file; an existing one is replaced, or gone on with.
 class MapFileWriter {
  public:
   /// Throws InputError naming the file where it cannot be created.
   explicit MapFileWriter(const std::string& path);
+  /// Goes on behind the first `num_bytes` of a file, which ReadMapFile() found to be good
+  /// (num_bytes_used); what lies behind them is cut off.
+  MapFileWriter(const std::string& path, std::int64_t num_bytes);
   ~MapFileWriter();
   MapFileWriter(const MapFileWriter&) = delete;
   MapFileWriter& operator=(const MapFileWriter&) = delete;

@@ -14,6 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kMapName[] = "/map.airdos";
+constexpr char kNotesName[] = "/map.airdos.open";
 constexpr int kGroundTruthPerChunk = 10000;
 constexpr std::size_t kLargeChunkBytes = 8u << 20;  // then it does not wait for its last frame
 
@@ -75,6 +76,31 @@ void MakeDirectory(const std::string& directory) {
   if (error) throw InputError(directory + ": cannot be made: " + error.message());
 }
 
+/// The map of `session` that was not closed and ends before image `seq`, if one lies there.
+struct UnfinishedMap {
+  std::int64_t num_bytes = 0;
+  FourDMap notes;  // what lay beside it
+};
+std::optional<UnfinishedMap> FindUnfinishedMap(const std::string& directory, const Header& header) {
+  UnfinishedMap found;
+  try {
+    MapFileSummary summary;
+    const FourDMap map = ReadFourDMap(directory + kMapName, &summary);
+    const bool is_earlier = map.frames.empty() || map.frames.rbegin()->first.value < header.seq;
+    if (map.is_closed || map.session != header.session || !is_earlier) return std::nullopt;
+    found.num_bytes = summary.num_bytes_used;
+  } catch (const InputError&) {  // none, or none that can be read
+    return std::nullopt;
+  }
+  try {
+    MapFileSummary summary;
+    FourDMap notes = ReadFourDMap(directory + kNotesName, &summary);
+    if (notes.session == header.session) found.notes = std::move(notes);
+  } catch (const InputError&) {  // then they are lost
+  }
+  return found;
+}
+
 /// A recording that was cut short must not be lost to the next one in the same place.
 void KeepUnfinishedMap(const std::string& path) {
   if (!fs::exists(path)) return;
@@ -123,6 +149,8 @@ MapRecorderNode::~MapRecorderNode() {
 
 void MapRecorderNode::Finish() {
   if (file_ != nullptr) CloseSession();
+  const std::string failure = std::exchange(failure_, "");
+  if (!failure.empty()) throw InputError("the recording is not complete: " + failure);
 }
 
 void MapRecorderNode::StartSession(const Header& header) {
@@ -131,15 +159,69 @@ void MapRecorderNode::StartSession(const Header& header) {
   session_ = header.session;
   session_directory_ = options_.directory;
   if (num_sessions_ > 1) session_directory_ += "/session_" + std::to_string(num_sessions_);
-  MakeDirectory(session_directory_);
-  KeepUnfinishedMap(session_directory_ + kMapName);
-  file_ = std::make_unique<MapFileWriter>(session_directory_ + kMapName);
-  Append(HeadChunk(session_, std::string("airdos map_recorder ") + kVersion));
+  if (num_sessions_ > 1 || !Resume(header)) {
+    MakeDirectory(session_directory_);
+    KeepUnfinishedMap(session_directory_ + kMapName);
+    file_ = std::make_unique<MapFileWriter>(session_directory_ + kMapName);
+    Append(HeadChunk(session_, std::string("airdos map_recorder ") + kVersion));
+  }
+  for (const auto& [seq, truth] : ground_truth_[session_]) not_noted_.insert(seq);
+  NoteGroundTruth();
+}
+
+bool MapRecorderNode::Resume(const Header& header) {
+  // A session that was not the first one lies in a folder of its own.
+  std::string directory = options_.directory;
+  int number = 1;
+  std::optional<UnfinishedMap> found = FindUnfinishedMap(directory, header);
+  while (!found) {
+    directory = options_.directory + "/session_" + std::to_string(++number);
+    if (!fs::exists(directory)) return false;
+    found = FindUnfinishedMap(directory, header);
+  }
+  num_sessions_ = number;
+  session_directory_ = directory;
+  file_ = std::make_unique<MapFileWriter>(directory + kMapName, found->num_bytes);
+  const FourDMap& notes = found->notes;
+  for (const auto& [id, frame] : notes.frames) {
+    if (!frame.ground_truth) continue;
+    const GroundTruth truth = {notes.ground_truth_axes, frame.utime, *frame.ground_truth};
+    if (ground_truth_[session_].emplace(id.value, truth).second) ++num_ground_truth_;
+  }
+  if (notes.camera) cameras_[session_].try_emplace(0, *notes.camera);
+  return true;
+}
+
+void MapRecorderNode::NoteGroundTruth() {
+  MapDelta changes;
+  std::int8_t axes = pose_t::AXES_INVALID;
+  for (const std::int64_t seq : not_noted_) {
+    const GroundTruth& truth = ground_truth_[session_].at(seq);
+    MapFrame frame;
+    frame.utime = truth.utime;
+    frame.ground_truth = truth.pose;
+    axes = truth.axes;
+    changes.SetFrame({seq}, frame);
+  }
+  std::optional<StereoCamera> camera;
+  const auto cameras = cameras_.find(session_);
+  if (cameras != cameras_.end()) camera = cameras->second.begin()->second;
+  not_noted_.clear();
+  try {
+    if (notes_ == nullptr) {
+      notes_ = std::make_unique<MapFileWriter>(session_directory_ + kNotesName);
+      notes_->Append(HeadChunk(session_, ""));
+    }
+    if (!changes.empty()) notes_->Append(changes.ToChunk());
+    notes_->Append(EndChunk(camera, axes));
+  } catch (const InputError&) {  // the map itself will say that the disk is full
+  }
 }
 
 void MapRecorderNode::ProcessFrame(const Header& header, MapRecorderInputs inputs) {
   if (file_ == nullptr) return;  // the disk failed
-  if (inputs.state) changes_.SetFrame({header.seq}, ToMapFrame(*inputs.state));
+  const bool has_pose = inputs.state && inputs.state->status != state_estimate_t::STATUS_INVALID;
+  if (has_pose) changes_.SetFrame({header.seq}, ToMapFrame(*inputs.state));
   for (const map_update_t& update : inputs.updates) {
     AddUpdate(update, &changes_);
     if (changes_.ApproximateBytes() > kLargeChunkBytes) WriteChunk();
@@ -169,6 +251,8 @@ std::string MapRecorderNode::AddGroundTruth(const pose_t& message) {
     return "";
   }
   ++num_ground_truth_;
+  if (file_ != nullptr && message.session == session_) not_noted_.insert(message.seq);
+  if (not_noted_.size() >= kGroundTruthPerNote) NoteGroundTruth();
   return "";
 }
 
@@ -182,7 +266,8 @@ void MapRecorderNode::SetGroundTruth(const std::pair<const std::int64_t, GroundT
 void MapRecorderNode::Append(const MapChunk& chunk) {
   try {
     file_->Append(chunk);
-  } catch (const InputError&) {
+  } catch (const InputError& error) {
+    failure_ = error.what();
     file_.reset();  // said once: nothing more is written
     throw;
   }
@@ -212,6 +297,10 @@ void MapRecorderNode::CloseSession() {
   cameras_.erase(session_);
   Append(EndChunk(camera, axes));
   file_.reset();
+  notes_.reset();
+  not_noted_.clear();
+  std::error_code ignored;
+  fs::remove(session_directory_ + kNotesName, ignored);
 
   if (!options_.export_at_end) return;
   MapFileSummary summary;

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,15 +37,19 @@ struct MapRecorderInputs {
 /// truth once kGroundTruthLag newer frames are done, and what is left, or comes later, at the end.
 /// It publishes nothing.
 ///
-/// A second session goes to `<directory>/session_2`, and so on. A map that an earlier run did not
-/// close (a kill) is kept under another name, one that it did close is replaced.
+/// A second session goes to `<directory>/session_2`, and so on. A map that was not closed (a kill)
+/// is gone on with if what comes is of its session and later than all of it: what is lost are the
+/// live poses of the chunk that was open and of the frames until the restart; refined poses come
+/// again as long as the optimizer has them in its window. Else it is kept under another name. A map
+/// that was closed is replaced. Until the map is closed ground truth and calibration lie beside it
+/// in `map.airdos.open`, so that a kill loses at most kGroundTruthPerNote poses of them.
 ///
 /// Memory: the open chunk and the ground truth that is not written yet (at most kMaxGroundTruth
 /// poses).
 class MapRecorderNode : public FrameNode<MapRecorderInputs> {
  public:
   static constexpr std::size_t kMaxGroundTruth = 1000000;
-  static constexpr std::int64_t kGroundTruthLag = 1000;
+  static constexpr std::size_t kGroundTruthPerNote = 10;
 
   /// Throws InputError where the directory cannot be made or written to.
   explicit MapRecorderNode(const MapRecorderOptions& options);
@@ -52,7 +57,7 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   ~MapRecorderNode() override;
 
   /// Writes the last chunks and the exports. Nothing where no frame came. Throws InputError naming
-  /// the file that cannot be written.
+  /// the file that cannot be written, or could not be earlier.
   void Finish() override;
 
   /// Of the session in work; empty before the first frame.
@@ -72,8 +77,10 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   };
 
   std::string AddGroundTruth(const pose_t& message);
-  void TakeOldGroundTruth(std::int64_t seq);
-  void SetGroundTruth(const std::pair<const std::int64_t, GroundTruth>& pose);
+  /// Goes on with the map of a recorder that was killed; false if there is none.
+  bool Resume(const Header& header);
+  /// Writes new ground truth of the session in work beside the map.
+  void NoteGroundTruth();
   void Append(const MapChunk& chunk);
   void WriteChunk();
   void CloseSession();
@@ -83,6 +90,7 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   int num_sessions_ = 0;
   std::int64_t session_ = 0;
   std::unique_ptr<MapFileWriter> file_;  // none before the first frame and after a failure
+  std::string failure_;                  // why nothing more could be written; empty if all was
   MapDelta changes_;                     // of the open chunk
   int num_frames_in_chunk_ = 0;
 
@@ -90,6 +98,8 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   std::map<std::int64_t, std::map<std::int64_t, GroundTruth>> ground_truth_;
   std::map<std::int64_t, std::map<std::int64_t, StereoCamera>> cameras_;
   std::size_t num_ground_truth_ = 0;
+  std::unique_ptr<MapFileWriter> notes_;  // map.airdos.open
+  std::set<std::int64_t> not_noted_;      // ground truth that is not in it
 };
 
 /// Reads launch_scripts/config/map_recorder.yaml's keys; the caller calls Finish() of the reader.

@@ -8,6 +8,7 @@
 
 #include "common/util/error.h"
 #include "processes/map_recorder/map_recorder_node.h"
+#include "processes/node/log_source.h"
 
 namespace airdos {
 namespace {
@@ -261,6 +262,53 @@ TEST_F(MapRecorderTest, KeepsAMapThatWasNotClosed) {
   EXPECT_FALSE(fs::exists(folder_ + "/a/map.airdos.unfinished_2"));
 }
 
+TEST_F(MapRecorderTest, GoesOnWithTheMapOfARecorderThatWasKilled) {
+  const std::vector<Envelope> all = Recording(30);
+  const auto of = [&](std::int64_t first, std::int64_t last) {
+    std::vector<Envelope> some;
+    for (const Envelope& message : all) {
+      const auto header = PeekHeader(message.payload.data(), message.payload.size());
+      const bool is_early_truth = message.channel == channel::kGroundTruth && header->seq < first;
+      const bool is_calibration = message.channel == channel::kCalibration;
+      if (header->seq >= first && header->seq <= last && !is_early_truth &&
+          (first == 0 || !is_calibration)) {
+        some.push_back(message);
+      }
+    }
+    return some;
+  };
+  const std::string map_path = folder_ + "/a/map.airdos";
+  {
+    MapRecorderNode killed(Options("a"));
+    Feed(of(0, 13), &killed);  // three chunks of four, two frames in the open one
+    fs::copy(map_path, folder_ + "/killed");
+    fs::copy(map_path + ".open", folder_ + "/killed.open");
+  }
+  fs::rename(folder_ + "/killed", map_path);
+  fs::rename(folder_ + "/killed.open", map_path + ".open");
+  std::ofstream(map_path, std::ios::app) << "half a chunk";
+  {
+    MapRecorderNode node(Options("a"));
+    Feed(of(16, 29), &node);
+    CompleteAll(&node);
+    node.Finish();
+  }
+  const FourDMap map = Read(folder_ + "/a");
+  EXPECT_TRUE(map.is_closed);
+  EXPECT_TRUE(map.camera) << "heard by the one that was killed";
+  EXPECT_EQ(map.ground_truth_axes, +pose_t::AXES_NED);
+  for (std::int64_t seq = 0; seq < 30; ++seq) {
+    const bool is_known = map.frames.count({seq}) > 0;
+    const bool is_lost = seq >= 12 && seq < 16;
+    EXPECT_EQ(is_known && map.frames.at({seq}).live.has_value(), !is_lost) << seq;
+    if (seq < 10 || seq >= 16) {
+      EXPECT_TRUE(is_known && map.frames.at({seq}).ground_truth) << seq;
+    }
+  }
+  EXPECT_FALSE(fs::exists(map_path + ".open"));
+  EXPECT_FALSE(fs::exists(map_path + ".unfinished_1"));
+}
+
 TEST_F(MapRecorderTest, AnotherSessionGoesToItsOwnFolder) {
   {
     MapRecorderNode node(Options("a"));
@@ -282,6 +330,19 @@ TEST_F(MapRecorderTest, AFrameWithoutItsUpdateIsKept) {
     Feed({State(0), State(1)}, &node);
     CompleteAll(&node);
     EXPECT_EQ(node.frames().num_incomplete, 2);
+  }
+  EXPECT_EQ(Read(folder_ + "/a").frames.size(), 2u);
+}
+
+TEST_F(MapRecorderTest, AFrameWithoutAPoseIsNoFrame) {
+  state_estimate_t unknown;
+  const Envelope state = State(1);
+  ASSERT_TRUE(Decode(state.payload.data(), state.payload.size(), &unknown));
+  unknown.status = state_estimate_t::STATUS_INVALID;
+  {
+    MapRecorderNode node(Options("a"));
+    Feed({State(0), {channel::kStateEstimate, Encode(unknown)}, State(2)}, &node);
+    CompleteAll(&node);
   }
   EXPECT_EQ(Read(folder_ + "/a").frames.size(), 2u);
 }
