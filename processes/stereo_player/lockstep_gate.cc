@@ -24,7 +24,18 @@ LockstepGate::LockstepGate(const LockstepGateOptions& options, double now_s)
   }
 }
 
+void LockstepGate::NoteNewcomer(const process_status_t& status) {
+  constexpr std::size_t kMostProcesses = 64;  // anybody may say anything
+  if (pids_.size() >= kMostProcesses && pids_.count(status.process) == 0) return;
+  std::int64_t& pid = pids_[status.process];
+  has_newcomer_ = has_newcomer_ || (pid != status.pid && !published_.empty());
+  pid = status.pid;
+}
+
 void LockstepGate::OnStatus(const process_status_t& status, double now_s) {
+  const bool is_there = status.state == process_status_t::STATE_READY ||
+                        status.state == process_status_t::STATE_STALLED;
+  if (is_there) NoteNewcomer(status);
   const auto it = processes_.find(status.process);
   if (it == processes_.end()) return;
   Process& process = it->second;
@@ -35,8 +46,9 @@ void LockstepGate::OnStatus(const process_status_t& status, double now_s) {
     }
     return;
   }
-  if (status.state == process_status_t::STATE_STARTING) return;
+  if (!is_there) return;
   process.heard_s = now_s;
+  process.is_idle = status.state == process_status_t::STATE_READY && status.waiting_for.empty();
   if (process.state == State::kPresent && process.pid == status.pid) return;
   if (process.state == State::kPresent) {
     Note(status.process + " was restarted (process " + std::to_string(process.pid) + ", now " +
@@ -45,7 +57,6 @@ void LockstepGate::OnStatus(const process_status_t& status, double now_s) {
   } else if (process.state == State::kGivenUp) {
     Note(status.process + " is there (process " + std::to_string(status.pid) + ")");
   }
-  has_newcomer_ = has_newcomer_ || !published_.empty();
   process.state = State::kPresent;
   process.pid = status.pid;
   process.num_in_flight = 0;
@@ -122,6 +133,11 @@ void LockstepGate::CheckWait(const std::string& name, Process* process, double n
     GiveUp(name, "finishes no frame for " + Seconds(options_.no_progress_s), process, now_s);
     return;
   } else if (process->num_in_flight == 0) {
+    return;
+  } else if (process->is_idle && now_s - process->progress_s > options_.idle_s) {
+    Note(name + " has no frame to work on for " + Seconds(options_.idle_s) + ": the " +
+         std::to_string(process->num_in_flight) + " on their way to it are lost, going on");
+    process->num_in_flight = 0;
     return;
   }
   if (now_s - process->reminded_s < options_.remind_s) return;

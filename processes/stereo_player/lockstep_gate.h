@@ -19,7 +19,10 @@ struct LockstepGateOptions {
   double remind_s = 5;        ///< how often a silent process is named
   double silence_s = 10;      ///< neither STATUS nor FRAME_DONE for longer: goes on without it
   double no_progress_s = 60;  ///< STATUS but no FRAME_DONE for longer: goes on
-  double start_s = 60;        ///< a process that is not there at the start
+  /// The same of a process whose STATUS says that it has no frame to work on: those on the way to
+  /// it are lost.
+  double idle_s = 10;
+  double start_s = 60;  ///< a process that is not there at the start
 };
 
 /// Decides when the player may publish the next frame: all processes that it waits for have said
@@ -40,7 +43,8 @@ class LockstepGate {
 
   /// What people should know, a line each; given once.
   std::vector<std::string> TakeNotes();
-  /// A process came back: it has missed the calibration. True once for each time.
+  /// A process, waited for or not, came (back) after the first frame: it has missed the
+  /// calibration. True once for each time.
   bool TakeNewcomer();
 
  private:
@@ -51,6 +55,7 @@ class LockstepGate {
     double heard_s = 0;     // STATUS or FRAME_DONE
     double progress_s = 0;  // FRAME_DONE, or nothing to do
     double reminded_s = 0;
+    bool is_idle = false;           // waits for frames
     std::size_t num_in_flight = 0;  // oldest ones are dropped from the front of published_
   };
   struct Published {
@@ -58,6 +63,7 @@ class LockstepGate {
     std::int64_t seq;
   };
 
+  void NoteNewcomer(const process_status_t& status);
   void CheckWaits(double now_s);
   void CheckWait(const std::string& name, Process* process, double now_s);
   void GiveUp(const std::string& name, const std::string& why, Process* process, double now_s);
@@ -67,6 +73,7 @@ class LockstepGate {
   double start_s_;
   std::map<std::string, Process> processes_;
   std::deque<Published> published_;  // in order; as many as somebody has in flight, at least one
+  std::map<std::string, std::int64_t> pids_;  // of every process that has said READY, by its name
   std::vector<std::string> notes_;
   bool has_newcomer_ = false;
 };

@@ -18,6 +18,13 @@ process_status_t Status(const std::string& process, std::int64_t pid,
   return status;
 }
 
+/// As Status(); there is a frame, but not all of its inputs.
+process_status_t Waiting(const std::string& process, std::int64_t pid) {
+  process_status_t status = Status(process, pid);
+  status.waiting_for = "CAMERA_RIGHT";
+  return status;
+}
+
 frame_done_t Done(const std::string& process, std::int64_t seq, std::int64_t session = kSession) {
   frame_done_t done = {};
   done.process = process;
@@ -124,14 +131,45 @@ TEST(LockstepGateTest, GivesUpOneThatLivesButFinishesNothing) {
   double now_s = 0;
   for (; now_s < 59; now_s += 1) {
     gate.OnStatus(Status("a", 1), now_s);
-    gate.OnStatus(Status("b", 2), now_s);
+    gate.OnStatus(Waiting("b", 2), now_s);
     EXPECT_FALSE(gate.MayPublish(now_s));
   }
   gate.OnStatus(Status("a", 1), 61);
-  gate.OnStatus(Status("b", 2), 61);
+  gate.OnStatus(Waiting("b", 2), 61);
   EXPECT_TRUE(gate.MayPublish(61));
   EXPECT_NE(Notes(&gate).find("b finishes no frame for 60 s: going on without it"),
             std::string::npos);
+}
+
+TEST(LockstepGateTest, GoesOnWhenAllThatIsInFlightWasLostOnTheWay) {
+  LockstepGate gate = FullGate();
+  gate.OnFrameDone(Done("a", 1), 0);
+  for (double now_s = 1; now_s < 10; now_s += 1) {
+    gate.OnStatus(Status("a", 1), now_s);
+    gate.OnStatus(Status("b", 2), now_s);
+    EXPECT_FALSE(gate.MayPublish(now_s)) << "it may still get them";
+  }
+  EXPECT_TRUE(gate.MayPublish(10.5));
+  EXPECT_NE(Notes(&gate).find("b has no frame to work on for 10 s: the 2 on their way to it are "
+                              "lost, going on"),
+            std::string::npos);
+  gate.OnPublished(kSession, 2, 11);
+  gate.OnPublished(kSession, 3, 11);
+  EXPECT_FALSE(gate.MayPublish(11)) << "it still counts";
+}
+
+TEST(LockstepGateTest, AsksForTheCalibrationForAProcessThatNobodyWaitsFor) {
+  LockstepGate gate(TwoProcesses(), 0);
+  gate.OnStatus(Status("c", 5), 0);
+  gate.OnPublished(kSession, 0, 0);
+  gate.OnStatus(Status("c", 5), 1);
+  EXPECT_FALSE(gate.TakeNewcomer()) << "it has heard everything";
+  gate.OnStatus(Status("c", 6, process_status_t::STATE_STOPPING), 2);
+  EXPECT_FALSE(gate.TakeNewcomer());
+  gate.OnStatus(Status("c", 7), 3);
+  EXPECT_TRUE(gate.TakeNewcomer());
+  gate.OnStatus(Status("c", 7), 4);
+  EXPECT_FALSE(gate.TakeNewcomer());
 }
 
 TEST(LockstepGateTest, GivesUpOneThatNeverStarts) {
