@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <iomanip>
 #include <sstream>
 
 #include "airdos/frame_done_t.hpp"
@@ -98,9 +99,34 @@ bool LcmRunner::WorkOnOne() {
   return has_worked;
 }
 
+void LcmRunner::NoteSilent(const std::string& channels) {
+  std::istringstream words(channels);
+  for (std::string channel; words >> channel;) {
+    // Without calibration a frame is lost as a whole: each one waits for it.
+    if (channel == channel::kCalibration) continue;
+    silent_[channel] = node_->channels().at(channel).num_received;
+  }
+}
+
+bool LcmRunner::WaitsForSilentOnly() {
+  for (auto it = silent_.begin(); it != silent_.end();) {
+    const bool has_spoken = node_->channels().at(it->first).num_received > it->second;
+    it = has_spoken ? silent_.erase(it) : std::next(it);
+  }
+  if (silent_.empty() || node_->num_pending() == 0) return false;
+  std::istringstream words(node_->waiting_for());
+  std::size_t num_awaited = 0;
+  for (std::string channel; words >> channel; ++num_awaited) {
+    if (silent_.count(channel) == 0) return false;
+  }
+  return num_awaited > 0;
+}
+
 void LcmRunner::CompleteAfterDeadline() {
-  if (node_->num_pending() == 0 || SteadyClock_s() - progress_s_ < options_.deadline_s) return;
+  if (node_->num_pending() == 0) return;
+  if (!WaitsForSilentOnly() && SteadyClock_s() - progress_s_ < options_.deadline_s) return;
   const std::string silent = node_->waiting_for();
+  NoteSilent(silent);
   is_stalled_ = true;
   if (silent_said_.insert(silent).second) {
     std::ostringstream line;
@@ -124,7 +150,10 @@ void LcmRunner::PublishOutput() {
   for (const Envelope& message : node_->TakeOutput()) {
     PublishBytes(message.channel, message.payload);
   }
-  latency_ms_.Add(std::max(0.0, 1e-3 * static_cast<double>(WallClock_us() - last_receive_utime_)));
+  const double latency_ms =
+      std::max(0.0, 1e-3 * static_cast<double>(WallClock_us() - last_receive_utime_));
+  latency_ms_.Add(latency_ms);
+  long_latency_ms_.Add(latency_ms);
   if (options_.publishes_frame_done) PublishFrameDone();
 }
 
@@ -202,6 +231,10 @@ void LcmRunner::SayCounters() {
   const FrameCounters& frames = node_->frames();
   Say("stopped; frames done " + std::to_string(frames.num_done) + ", incomplete " +
       std::to_string(frames.num_incomplete) + ", skipped " + std::to_string(frames.num_skipped));
+  std::ostringstream latency;
+  latency << std::fixed << std::setprecision(1) << "latency p50 " << long_latency_ms_.Percentile(0.5) << " ms, p99 "
+          << long_latency_ms_.Percentile(0.99) << " ms";
+  Say(latency.str());
   for (const auto& [channel, counters] : node_->channels()) {
     Say(channel + ": received " + std::to_string(counters.num_received) + ", missing " +
         std::to_string(counters.num_missing) + ", duplicate " +

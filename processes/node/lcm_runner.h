@@ -2,6 +2,7 @@
 #define AIRDOS_PROCESSES_NODE_LCM_RUNNER_H_
 
 #include <cstdint>
+#include <map>
 #include <ostream>
 #include <set>
 #include <string>
@@ -19,7 +20,9 @@ struct LcmRunnerOptions {
   };
   std::string process;  ///< name in STATUS and FRAME_DONE
   Pace pace = Pace::kLockstep;
-  double deadline_s = 5;              ///< a frame that lacks inputs for longer is completed without
+  /// A frame that lacks inputs for longer is completed without, and so are, at once, the frames
+  /// after it that lack nothing else, until one of those channels speaks again.
+  double deadline_s = 5;
   bool publishes_frame_done = false;  ///< says FRAME_DONE after each frame
 };
 
@@ -41,6 +44,10 @@ class LcmRunner {
   bool WorkOnFrames();
   bool WorkOnOne();
   void CompleteAfterDeadline();
+  /// Whether the oldest frame waits only for channels that were silent for a deadline and still
+  /// are.
+  bool WaitsForSilentOnly();
+  void NoteSilent(const std::string& channels);
   void PublishOutput();
   void PublishFrameDone();
   void PublishStatus(std::int8_t state);
@@ -63,10 +70,12 @@ class LcmRunner {
   double next_status_s_ = 0;
   std::set<std::string> silent_said_;   // waiting_for() texts that were said already
   std::set<std::string> rejects_said_;  // channels; later rejects are counted in STATUS only
+  std::map<std::string, std::int64_t> silent_;  // channels, and how much had come on them by then
   bool is_stalled_ = false;
   bool publish_failure_said_ = false;
   std::string last_error_;
-  RecentValues latency_ms_{100};
+  RecentValues latency_ms_{100};         // for STATUS
+  RecentValues long_latency_ms_{20000};  // for the last word
   double cpu_at_start_ms_ = 0;
 };
 
