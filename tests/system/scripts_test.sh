@@ -43,7 +43,7 @@ await() {
 
 wrong_options_exit_2_in_one_line() {
   local script
-  for script in setup demo test spy run_live replay_log; do
+  for script in setup demo test spy run_live replay_log long_run; do
     expect 0 "Usage: launch_scripts/$script.sh" "$scripts/$script.sh" --help
     expect 2 "--no-such-option" "$scripts/$script.sh" --no-such-option
   done
@@ -53,6 +53,8 @@ wrong_options_exit_2_in_one_line() {
   expect 2 "--pace: 'fast'" "$scripts/run_live.sh" --pace fast
   expect 2 "--speed: not a number: 'x'" "$scripts/run_live.sh" --speed x
   expect 2 "exclude each other" "$scripts/run_live.sh" --data / --log "$0"
+  expect 2 "--minutes: not a whole number above 0: '0'" "$scripts/long_run.sh" --minutes 0
+  expect 2 "no folder or log '/nonexistent'" "$scripts/long_run.sh" /nonexistent
   expect 2 "no file '/nonexistent.lcm'" "$scripts/replay_log.sh" /nonexistent.lcm
   expect 2 "no run of run_live.sh in '/nonexistent'" "$scripts/replay_log.sh" "$0" --run /nonexistent
   expect 2 "no run of run_live.sh in '/nonexistent'" "$scripts/spy.sh" --namespace /nonexistent

@@ -1,0 +1,118 @@
+#!/bin/bash
+# Runs the processes for a long time as they run on a robot: in realtime pace, a sequence at 10 Hz again and again as one long
+# session. Prints what was lost, how long frames took and how much memory each process has (Markdown).
+#
+# Usage: launch_scripts/long_run.sh [FOLDER|LOG] [--minutes N] [--run-dir FOLDER]
+#   FOLDER|LOG        what is played (default: the sample log)
+#   --minutes N       how long (default 30)
+#   --run-dir FOLDER  where everything goes (default logs/runs/long): long_run.md, memory.tsv (every 5 s: seconds, kB of memory
+#                     (RSS) of each process) and what run_live.sh leaves
+#   --help            this text
+#
+# Memory growth: the largest of the second half over the largest of the second quarter; the first quarter fills the maps.
+# Exit 1 if a frame or a message was lost or skipped, or a process grew by more than 10 %: on a machine that is fast enough and
+# has nothing else to do neither happens.
+set -euo pipefail
+# shellcheck source=launch_scripts/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+readonly processes=(frontend human-tracker optimizer map-recorder)
+readonly max_growth_percent=10
+readonly sample_period_s=5
+
+data='' minutes=30 run_dir=$AIRDOS_RUNS/long
+while (($# > 0)); do
+  case $1 in
+    --minutes | --run-dir)
+      need_value "$@"
+      name=${1#--}
+      printf -v "${name//-/_}" '%s' "$2"
+      shift
+      ;;
+    --help | -h)
+      print_help
+      exit 0
+      ;;
+    -*) die_usage "unknown option '$1' (see --help)" ;;
+    *)
+      [[ -z $data ]] || die_usage "one folder or log, not '$data' and '$1'"
+      data=$1
+      ;;
+  esac
+  shift
+done
+data=${data:-$AIRDOS_ROOT/logs/road_crossing06.lcm}
+[[ -e $data ]] || die_usage "no folder or log '$data'"
+[[ $minutes =~ ^[1-9][0-9]*$ ]] || die_usage "--minutes: not a whole number above 0: '$minutes'"
+need_program airdos-stereo-player
+
+# More rounds than there is time for, of at least 1 s each; the run is ended when the time is over.
+loops=$((minutes * 60))
+
+mkdir -p "$run_dir"
+rm -f "$run_dir"/{state,memory.tsv,long_run.md,map.airdos}
+"$(dirname "$0")/run_live.sh" --data "$data" --loop "$loops" --pace realtime --run-dir "$run_dir" > "$run_dir/run_live.log" 2>&1 &
+live_pid=$!
+trap 'kill -TERM "$live_pid" 2> /dev/null || true' EXIT
+
+# A row of memory.tsv; nothing while a process is not there.
+sample() {
+  local process pid kb row=$SECONDS
+  for process in "${processes[@]}"; do
+    pid=$(state_of "$process" "$run_dir" 2> /dev/null) || return 0
+    kb=$(awk '/^VmRSS:/ { print $2 }' "/proc/$pid/status" 2> /dev/null) || return 0
+    [[ -n $kb ]] || return 0
+    row+=$'\t'$kb
+  done
+  echo "$row" >> "$run_dir/memory.tsv"
+}
+
+SECONDS=0
+while ((SECONDS < minutes * 60)) && kill -0 "$live_pid" 2> /dev/null; do
+  sleep "$sample_period_s"
+  sample
+done
+kill -0 "$live_pid" 2> /dev/null || die "the run ended early: see $run_dir/run_live.log"
+kill -TERM "$live_pid"
+code=0
+wait "$live_pid" || code=$?
+trap - EXIT
+((code == 0)) || die "a process ended badly: see $run_dir/run_live.log"
+[[ -s $run_dir/memory.tsv ]] || die "nothing was measured: see $run_dir/run_live.log"
+
+# of PROCESS REGEX: the number behind REGEX in what a process said when it stopped; the sum if there are several.
+number() { sed -n "s/^airdos-$1: .*$2\([0-9.]*\).*/\1/p" "$run_dir/$1.log" | awk '{ sum += $1 } END { print sum + 0 }'; }
+
+# growth COLUMN: MB at the start and at the end; growth in %.
+growth() {
+  awk -F'\t' -v i="$1" '
+    { mb[NR] = $i / 1024 }
+    END {
+      for (k = 1; k <= NR; ++k) {
+        if (4 * k > NR && 2 * k <= NR && mb[k] > early) early = mb[k]
+        if (2 * k > NR && mb[k] > late) late = mb[k]
+      }
+      printf "%.1f %.1f %.1f\n", mb[1], mb[NR], early > 0 ? 100 * (late / early - 1) : 0
+    }' "$run_dir/memory.tsv"
+}
+
+failed=no
+{
+  echo "| process | frames done | incomplete | skipped | messages missing | latency ms p50 | p99 | MB at the start | at the end | growth % |"
+  echo "|---|---|---|---|---|---|---|---|---|---|"
+  column=2
+  for process in "${processes[@]}"; do
+    read -r first last percent <<< "$(growth "$column")"
+    incomplete=$(number "$process" 'incomplete ') skipped=$(number "$process" 'skipped ') missing=$(number "$process" 'missing ')
+    echo "| $process | $(number "$process" 'frames done ') | $incomplete | $skipped | $missing | $(number "$process" 'p50 ') |" \
+      "$(number "$process" 'p99 ') | $first | $last | $percent |"
+    ((incomplete + skipped + missing == 0)) || failed=lost
+    awk "BEGIN { exit !($percent > $max_growth_percent) }" && failed=grown
+    column=$((column + 1))
+  done
+} > "$run_dir/long_run.md"
+cat "$run_dir/long_run.md"
+case $failed in
+  lost) die "frames or messages were lost: is the machine fast enough, and idle? (logs: $run_dir)" ;;
+  grown) die "a process grew by more than $max_growth_percent %" ;;
+esac
