@@ -11,7 +11,7 @@
 #include "airdos/process_status_t.hpp"
 #include "common/util/version.h"
 #include "processes/node/channels.h"
-#include "processes/node/types_fingerprint.h"
+#include "processes/node/log_source.h"
 
 namespace airdos {
 namespace {
@@ -108,23 +108,25 @@ void LcmRunner::NoteSilent(const std::string& channels) {
   }
 }
 
-bool LcmRunner::WaitsForSilentOnly() {
+double LcmRunner::Patience_s() {
   for (auto it = silent_.begin(); it != silent_.end();) {
     const bool has_spoken = node_->channels().at(it->first).num_received > it->second;
     it = has_spoken ? silent_.erase(it) : std::next(it);
   }
-  if (silent_.empty() || node_->num_pending() == 0) return false;
+  if (silent_.empty()) return options_.deadline_s;
   std::istringstream words(node_->waiting_for());
   std::size_t num_awaited = 0;
+  double patience_s = 0;
   for (std::string channel; words >> channel; ++num_awaited) {
-    if (silent_.count(channel) == 0) return false;
+    if (silent_.count(channel) == 0) return options_.deadline_s;
+    if (!IsInputChannel(channel)) patience_s = 0.1 * options_.deadline_s;
   }
-  return num_awaited > 0;
+  return num_awaited > 0 ? patience_s : options_.deadline_s;
 }
 
 void LcmRunner::CompleteAfterDeadline() {
   if (node_->num_pending() == 0) return;
-  if (!WaitsForSilentOnly() && SteadyClock_s() - progress_s_ < options_.deadline_s) return;
+  if (SteadyClock_s() - progress_s_ < Patience_s()) return;
   const std::string silent = node_->waiting_for();
   NoteSilent(silent);
   is_stalled_ = true;
@@ -232,8 +234,9 @@ void LcmRunner::SayCounters() {
   Say("stopped; frames done " + std::to_string(frames.num_done) + ", incomplete " +
       std::to_string(frames.num_incomplete) + ", skipped " + std::to_string(frames.num_skipped));
   std::ostringstream latency;
-  latency << std::fixed << std::setprecision(1) << "latency p50 " << long_latency_ms_.Percentile(0.5) << " ms, p99 "
-          << long_latency_ms_.Percentile(0.99) << " ms";
+  latency << std::fixed << std::setprecision(1) << "latency p50 "
+          << long_latency_ms_.Percentile(0.5) << " ms, p99 " << long_latency_ms_.Percentile(0.99)
+          << " ms";
   Say(latency.str());
   for (const auto& [channel, counters] : node_->channels()) {
     Say(channel + ": received " + std::to_string(counters.num_received) + ", missing " +

@@ -20,8 +20,9 @@ struct LcmRunnerOptions {
   };
   std::string process;  ///< name in STATUS and FRAME_DONE
   Pace pace = Pace::kLockstep;
-  /// A frame that lacks inputs for longer is completed without, and so are, at once, the frames
-  /// after it that lack nothing else, until one of those channels speaks again.
+  /// A frame that lacks inputs for longer is completed without. The frames after it that lack
+  /// nothing else do not wait for what comes from outside (a camera, a detector), and a tenth as
+  /// long for other processes, which have work to do; until one of those channels speaks again.
   double deadline_s = 5;
   bool publishes_frame_done = false;  ///< says FRAME_DONE after each frame
 };
@@ -44,9 +45,8 @@ class LcmRunner {
   bool WorkOnFrames();
   bool WorkOnOne();
   void CompleteAfterDeadline();
-  /// Whether the oldest frame waits only for channels that were silent for a deadline and still
-  /// are.
-  bool WaitsForSilentOnly();
+  /// How long the oldest frame may wait.
+  double Patience_s();
   void NoteSilent(const std::string& channels);
   void PublishOutput();
   void PublishFrameDone();
