@@ -194,10 +194,14 @@ cv::Mat FrontendNode::Mask(const FrontendInputs& inputs) {
 
 std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
                                                     const FrontendInputs& inputs) {
-  if (!inputs.left || !inputs.right) return std::nullopt;
+  if (!inputs.left) return std::nullopt;
   const std::optional<cv::Mat> left = DecodeGray(*inputs.left);
-  const std::optional<cv::Mat> right = DecodeGray(*inputs.right);
-  if (!Fits(left, channel::kCameraLeft) || !Fits(right, channel::kCameraRight)) return std::nullopt;
+  std::optional<cv::Mat> right;
+  if (inputs.right) right = DecodeGray(*inputs.right);
+  const bool has_right = inputs.right && Fits(right, channel::kCameraRight);
+  if (!Fits(left, channel::kCameraLeft)) return std::nullopt;
+  // A blank right image holds no corner: the landmarks are tracked in the left one alone.
+  if (!has_right) right = cv::Mat::zeros(left->size(), CV_8UC1);
   return StereoImagePair{FrameId{header.seq},
                          static_cast<double>(header.utime - first_.utime) * 1e-6,
                          *left,

@@ -47,7 +47,7 @@ struct FrontendInputs {
 /// PERSON_MASK (if masks are used), HUMAN_OBSERVATIONS and PERSON_KEYPOINTS_LEFT (if people are
 /// used) and MAP_UPDATE in, STATIC_FEATURES out. The optimizer's corrections are applied at a fixed
 /// lag of frames, so that the result does not depend on how fast the optimizer is. A frame without
-/// both images coasts.
+/// its right image is tracked, but makes no landmarks; one without its left image coasts.
 class FrontendNode : public FrameNode<FrontendInputs> {
  public:
   explicit FrontendNode(const FrontendOptions& options);

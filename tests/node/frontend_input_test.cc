@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 #include <vector>
@@ -12,7 +13,7 @@
 namespace airdos {
 namespace {
 
-TEST(FrontendNode, AFrameWithoutItsRightImageCoasts) {
+TEST(FrontendNode, AFrameWithoutItsRightImageIsTrackedInTheLeftOne) {
   FrontendNode node(WithoutFeedback());
   Send(channel::kCalibration, Calibration(), &node);
   for (int k = 0; k < 5; ++k) SendFrame(k, &node);
@@ -26,9 +27,10 @@ TEST(FrontendNode, AFrameWithoutItsRightImageCoasts) {
   const std::vector<static_features_t> output = StepAll(&node);
   ASSERT_EQ(output.size(), 2u);
   EXPECT_EQ(output[0].seq, 5);
-  EXPECT_EQ(output[0].tracking_state, kCoasting);
-  EXPECT_EQ(output[0].num_features, 0);
-  EXPECT_LT(PositionError_m(output[0], Truth(5)), 0.03);
+  EXPECT_EQ(output[0].tracking_state, kTracking);
+  EXPECT_GT(output[0].num_features, 30);
+  EXPECT_EQ(std::count(output[0].has_right.begin(), output[0].has_right.end(), 1), 0);
+  EXPECT_LT(PositionError_m(output[0], Truth(5)), 0.015);
   EXPECT_EQ(output[1].tracking_state, kTracking);
   EXPECT_LT(PositionError_m(output[1], Truth(6)), 0.015);
   EXPECT_EQ(node.channels().at(channel::kCameraRight).num_missing, 1);
@@ -124,7 +126,24 @@ TEST(FrontendNode, ACorruptJpegIsCountedAndTheFrameCoasts) {
   EXPECT_EQ(node.channels().at(channel::kCameraRight).num_rejected, 0);
 }
 
-TEST(FrontendNode, AnImageOfAnotherSizeIsCountedAndTheFrameCoasts) {
+TEST(FrontendNode, AFrameWithoutItsLeftImageCoasts) {
+  FrontendNode node(WithoutFeedback());
+  Send(channel::kCalibration, Calibration(), &node);
+  for (int k = 0; k < 5; ++k) SendFrame(k, &node);
+  SendNobody(5, &node);
+  Send(channel::kCameraRight, Right(5), &node);
+  Send(channel::kPersonMask, NoMask(5), &node);
+  SendFrame(6, &node);
+  const std::vector<static_features_t> output = StepAll(&node);
+  ASSERT_EQ(output.size(), 7u);
+  EXPECT_EQ(output[5].tracking_state, kCoasting);
+  EXPECT_EQ(output[5].num_features, 0);
+  EXPECT_LT(PositionError_m(output[5], Truth(5)), 0.03);
+  EXPECT_EQ(output[6].tracking_state, kTracking);
+  EXPECT_LT(PositionError_m(output[6], Truth(6)), 0.015);
+}
+
+TEST(FrontendNode, AnImageOfAnotherSizeIsCountedAndDoneWithout) {
   FrontendNode node(WithoutFeedback());
   Send(channel::kCalibration, Calibration(), &node);
   SendFrame(0, &node);
@@ -134,7 +153,8 @@ TEST(FrontendNode, AnImageOfAnotherSizeIsCountedAndTheFrameCoasts) {
   Send(channel::kPersonMask, NoMask(1), &node);
   const std::vector<static_features_t> output = StepAll(&node);
   ASSERT_EQ(output.size(), 2u);
-  EXPECT_EQ(output[1].tracking_state, kCoasting);
+  EXPECT_EQ(output[1].tracking_state, kTracking);
+  EXPECT_EQ(std::count(output[1].has_right.begin(), output[1].has_right.end(), 1), 0);
   EXPECT_EQ(node.channels().at(channel::kCameraRight).num_rejected, 1);
 }
 

@@ -87,7 +87,7 @@ class KillTest : public FaultTest, public testing::WithParamInterface<const char
 // Not lost: W, the map written so far, the run.
 TEST_P(KillTest, TheRunGoesOnInTheSameWorld) {
   const std::string victim = GetParam();
-  std::mt19937_64 random(5);
+  std::mt19937_64 random(11);
   for (int round = 0; round < NumRounds(); ++round) {
     const std::size_t at = 6 + random() % 9;
     SCOPED_TRACE("round " + std::to_string(round) + ", killed after " + std::to_string(at));
