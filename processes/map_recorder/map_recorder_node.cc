@@ -196,11 +196,12 @@ void MapRecorderNode::NoteGroundTruth() {
   MapDelta changes;
   std::int8_t axes = pose_t::AXES_INVALID;
   for (const std::int64_t seq : not_noted_) {
-    const GroundTruth& truth = ground_truth_[session_].at(seq);
+    const auto truth = ground_truth_[session_].find(seq);
+    if (truth == ground_truth_[session_].end()) continue;
     MapFrame frame;
-    frame.utime = truth.utime;
-    frame.ground_truth = truth.pose;
-    axes = truth.axes;
+    frame.utime = truth->second.utime;
+    frame.ground_truth = truth->second.pose;
+    axes = truth->second.axes;
     changes.SetFrame({seq}, frame);
   }
   std::optional<StereoCamera> camera;
