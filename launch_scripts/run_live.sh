@@ -185,7 +185,10 @@ report_ended() {
     if [[ -z ${exit_codes[$name]:-} ]] && ! is_running "$name"; then
       collect "$name"
       say "$name ended with exit code ${exit_codes[$name]}; the others go on. To start it again:"
-      say "  nsenter -t $$ -n -- $AIRDOS_BIN/airdos-$name --lcm-url '$url' --pace $pace"
+      # The recorder finds its unfinished map there and goes on with it.
+      say "  nsenter -t $$ -n -- $AIRDOS_BIN/airdos-$name --lcm-url '$url' --pace $pace$(
+        [[ $name != map-recorder ]] || echo " --set output.directory='$run_dir'"
+      )"
     fi
   done
 }
