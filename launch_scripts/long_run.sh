@@ -92,7 +92,7 @@ growth() {
         if (4 * k > NR && 2 * k <= NR && mb[k] > early) early = mb[k]
         if (2 * k > NR && mb[k] > late) late = mb[k]
       }
-      printf "%.1f %.1f %.1f\n", mb[1], mb[NR], early > 0 ? 100 * (late / early - 1) : 0
+      printf "%.1f %.1f %.1f\n", mb[1], mb[NR], (early > 0 ? 100 * (late / early - 1) : 0)
     }' "$run_dir/memory.tsv"
 }
 
