@@ -129,10 +129,11 @@ class SlidingWindowOptimizer {
   StereoCamera camera_;
   WindowMap map_;
   HumanTracks people_;
-  BundleProblem problem_;             // the last one with people
-  std::deque<TimedPose> trajectory_;  // the last frames, oldest first, as optimized
-  FrameId odometry_frame_;            // the last one with odometry
-  FrameId odometry_start_;            // of its O
+  BundleProblem problem_;              // the last one with people
+  std::vector<double> solver_memory_;  // no values: capacity for the next solve
+  std::deque<TimedPose> trajectory_;   // the last frames, oldest first, as optimized
+  FrameId odometry_frame_;             // the last one with odometry
+  FrameId odometry_start_;             // of its O
   std::optional<Se3> T_O_C_;
   std::optional<AccelerationSigma> carrier_;  // how the front end says that the camera moves
 };

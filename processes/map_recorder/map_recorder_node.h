@@ -50,6 +50,7 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
  public:
   static constexpr std::size_t kMaxGroundTruth = 1000000;
   static constexpr std::size_t kGroundTruthPerNote = 10;
+  static constexpr std::int64_t kGroundTruthLag = 1000;
 
   /// Throws InputError where the directory cannot be made or written to.
   explicit MapRecorderNode(const MapRecorderOptions& options);
@@ -81,6 +82,8 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   bool Resume(const Header& header);
   /// Writes new ground truth of the session in work beside the map.
   void NoteGroundTruth();
+  void TakeOldGroundTruth(std::int64_t seq);
+  void SetGroundTruth(const std::pair<const std::int64_t, GroundTruth>& pose);
   void Append(const MapChunk& chunk);
   void WriteChunk();
   void CloseSession();

@@ -12,6 +12,7 @@
 #include "common/util/version.h"
 #include "processes/node/channels.h"
 #include "processes/node/log_source.h"
+#include "processes/node/types_fingerprint.h"
 
 namespace airdos {
 namespace {

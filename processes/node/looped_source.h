@@ -15,7 +15,7 @@ namespace airdos {
 /// A source again and again as one long session: capture times and image numbers go on where the
 /// time before ended (a mean frame interval later), everything else is as it was. The scene jumps
 /// where it starts again. For long runs: what grows with their length shows. Whatever session the
-/// messages had, all have that of the first.
+/// messages had, all have that of the first. Played once, nothing is changed.
 class LoopedSource : public FrameSource {
  public:
   using Open = std::function<std::unique_ptr<FrameSource>()>;
