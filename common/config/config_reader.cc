@@ -11,8 +11,16 @@
 namespace airdos {
 namespace {
 
-void Flatten(const YAML::Node& node, const std::string& prefix, const std::string& name,
+constexpr std::size_t kMaxTextBytes = 100000;
+constexpr std::size_t kMaxValues = 1000;
+constexpr int kMaxDepth = 8;
+
+// Aliases make a tree of 2^n values of n lines, or one without an end: so both its size and its
+// depth are bounded.
+void Flatten(const YAML::Node& node, const std::string& prefix, const std::string& name, int depth,
              std::map<std::string, std::string>* values) {
+  if (depth > kMaxDepth) throw InputError(name + ": key '" + prefix + "' is nested too deeply");
+  if (values->size() > kMaxValues) throw InputError(name + ": holds too many keys");
   if (node.IsScalar()) {
     if (!values->emplace(prefix, node.Scalar()).second) {
       throw InputError(name + ": key '" + prefix + "' appears twice");
@@ -24,7 +32,7 @@ void Flatten(const YAML::Node& node, const std::string& prefix, const std::strin
   }
   for (const auto& entry : node) {
     const std::string key = entry.first.Scalar();
-    Flatten(entry.second, prefix.empty() ? key : prefix + "." + key, name, values);
+    Flatten(entry.second, prefix.empty() ? key : prefix + "." + key, name, depth + 1, values);
   }
 }
 
@@ -33,17 +41,21 @@ void Flatten(const YAML::Node& node, const std::string& prefix, const std::strin
 ConfigReader ConfigReader::FromFile(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw InputError(path + ": cannot be read");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return FromString(text.str(), path);
+  std::string text(kMaxTextBytes + 1, '\0');  // one more, which FromString() refuses
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return FromString(text, path);
 }
 
 ConfigReader ConfigReader::FromString(const std::string& text, const std::string& name) {
   ConfigReader reader;
   reader.name_ = name;
+  if (text.size() > kMaxTextBytes) {
+    throw InputError(name + ": holds more than " + std::to_string(kMaxTextBytes) + " bytes");
+  }
   try {
     const YAML::Node root = YAML::Load(text);
-    if (!root.IsNull()) Flatten(root, "", name, &reader.values_);
+    if (!root.IsNull()) Flatten(root, "", name, 0, &reader.values_);
   } catch (const YAML::Exception& error) {
     throw InputError(name + ": line " + std::to_string(error.mark.line + 1) + ": " + error.msg);
   }

@@ -11,12 +11,15 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/util/error.h"
+#include "common/util/image_header.h"
 #include "common/util/text_file.h"
 
 namespace airdos {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMaxFileBytes = 32u << 20;  // of an image
 
 [[noreturn]] void Fail(const std::string& path, int line, const std::string& why) {
   throw InputError(path + ":" + std::to_string(line) + ": " + why);
@@ -65,10 +68,17 @@ bool SplitDecimal(std::string text, std::string* digits, int* num_integer_digits
 
 std::vector<std::uint8_t> ReadBytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path + ": cannot be read");
-  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file),
-                                  std::istreambuf_iterator<char>()};
-  if (file.bad()) throw InputError(path + ": cannot be read");
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(path, error);  // fails for what is no plain file
+  if (!file || error) throw InputError(path + ": cannot be read");
+  if (size > kMaxFileBytes) {
+    throw InputError(path + ": holds " + std::to_string(size) + " bytes, at most " +
+                     std::to_string(kMaxFileBytes) + " are read");
+  }
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (static_cast<std::uintmax_t>(file.gcount()) != size)
+    throw InputError(path + ": cannot be read");
   return bytes;
 }
 
@@ -85,9 +95,10 @@ std::pair<int, int> ReadImageSize(const std::string& path) {
   const std::vector<std::uint8_t> bytes = ReadImageFile(path);
   cv::Mat image;
   try {
-    image = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
+    if (ReadImageHeader(bytes.data(), bytes.size()))  // before there is room for what it claims
+      image = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
   } catch (const cv::Exception&) {
-    image.release();  // a header that promises more pixels than OpenCV wants to hold
+    image.release();
   }
   if (image.empty()) throw InputError(path + ": cannot be decoded as an image");
   return {image.cols, image.rows};

@@ -13,7 +13,7 @@ namespace airdos {
 // The files that data set layouts are made of. Every function throws InputError naming the file and
 // the line that cannot be used.
 
-/// A whole file.
+/// A whole file of at most 32 MB.
 std::vector<std::uint8_t> ReadBytes(const std::string& path);
 /// A whole JPEG or PNG file, told by its first bytes.
 std::vector<std::uint8_t> ReadImageFile(const std::string& path);

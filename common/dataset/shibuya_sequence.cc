@@ -16,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMaxJsonBytes = 100000;
 constexpr std::int64_t kMaxTimeDifferenceUs = 1000;  // times are written with at least ms
 
 StereoCamera PublicCamera() {
@@ -32,15 +33,19 @@ StereoCamera PublicCamera() {
 double ReadNumber(const nlohmann::json& json, const std::string& path, const std::string& key) {
   if (!json.contains(key)) throw InputError(path + ": key '" + key + "' is missing");
   if (!json[key].is_number()) {
-    throw InputError(path + ": key '" + key + "' with value '" + json[key].dump() +
-                     "': must be a number");
+    // Its value may be nested more deeply than dump() bears.
+    throw InputError(path + ": key '" + key + "' with a value of type " + json[key].type_name() +
+                     ": must be a number");
   }
   return json[key].get<double>();
 }
 
 StereoCamera ReadCalibJson(const std::string& path, std::pair<int, int> size) {
-  std::ifstream file(path);
-  const nlohmann::json json = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+  const std::vector<std::uint8_t> text = ReadBytes(path);
+  if (text.size() > kMaxJsonBytes) {
+    throw InputError(path + ": holds more than " + std::to_string(kMaxJsonBytes) + " bytes");
+  }
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object()) throw InputError(path + ": is no JSON object");
   StereoCamera camera;
   std::tie(camera.width, camera.height) = size;

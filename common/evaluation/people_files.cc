@@ -14,6 +14,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::size_t kMaxUnpackedBytes = 256u << 20;  // of some 7,000 frames
+
 Joints ParseJoints(const json& object) {
   Joints joints;
   for (const auto& [key, place] : object.items()) {
@@ -34,6 +36,11 @@ std::string ReadUnpacked(const std::string& path) {
   int size = 0;
   while ((size = gzread(file, buffer, sizeof buffer)) > 0) {
     text.append(buffer, static_cast<std::size_t>(size));
+    if (text.size() > kMaxUnpackedBytes) {
+      gzclose(file);
+      throw InputError(path + ": unpacks to more than " + std::to_string(kMaxUnpackedBytes) +
+                       " bytes");
+    }
   }
   gzclose(file);
   if (size < 0) throw InputError(path + ": cannot be unpacked");

@@ -19,7 +19,9 @@ namespace airdos {
 // ends the writer leaves a file whose last chunk at most is cut short.
 
 inline constexpr std::uint32_t kMapFileVersion = 1;
-inline constexpr std::size_t kMaxChunkBytes = 64u << 20;  ///< raw, with type; or packed
+/// Raw, with type; or packed. The recorder closes a chunk at 8 MB, and a packed one of 1 kB may
+/// claim as much as this.
+inline constexpr std::size_t kMaxChunkBytes = 16u << 20;
 
 struct MapChunk {
   std::uint32_t type = 0;

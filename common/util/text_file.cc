@@ -1,5 +1,6 @@
 #include "common/util/text_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -9,13 +10,47 @@
 #include "common/util/error.h"
 
 namespace airdos {
+namespace {
+
+constexpr std::size_t kMaxLineBytes = 20000;
+constexpr int kMaxLines = 1000000;
+
+/// Like std::getline(), but a line without an end is left where it is too long.
+bool ReadLine(std::istream* stream, std::string* line) {
+  line->clear();
+  std::streambuf* const buffer = stream->rdbuf();
+  for (int c = buffer->sbumpc(); c != std::char_traits<char>::eof(); c = buffer->sbumpc()) {
+    if (c == '\n') return true;
+    line->push_back(static_cast<char>(c));
+    if (line->size() > kMaxLineBytes) return true;
+  }
+  return !line->empty();
+}
+
+/// For a message of one line: without control characters, and not too long.
+std::string Shown(std::string word) {
+  constexpr std::size_t kMaxShown = 60;
+  if (word.size() > kMaxShown) word = word.substr(0, kMaxShown) + "...";
+  std::replace_if(
+      word.begin(), word.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  return word;
+}
+
+}  // namespace
 
 std::vector<TextLine> ReadTextLines(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw InputError(path + ": cannot be read");
   std::vector<TextLine> lines;
   std::string text;
-  for (int number = 1; std::getline(file, text); ++number) {
+  for (int number = 1; ReadLine(&file, &text); ++number) {
+    const std::string where = path + ":" + std::to_string(number);
+    if (text.size() > kMaxLineBytes) {
+      throw InputError(where + ": a line of more than " + std::to_string(kMaxLineBytes) + " bytes");
+    }
+    if (number > kMaxLines) {
+      throw InputError(where + ": more than " + std::to_string(kMaxLines) + " lines");
+    }
     std::istringstream stream(text);
     TextLine line;
     line.number = number;
@@ -31,8 +66,10 @@ std::vector<double> ParseNumbers(const std::string& path, const TextLine& line, 
   for (std::size_t i = first; i < line.words.size(); ++i) {
     char* end = nullptr;
     const double number = std::strtod(line.words[i].c_str(), &end);
-    if (*end != '\0' || !std::isfinite(number)) {
-      throw InputError(path + ":" + std::to_string(line.number) + ": '" + line.words[i] +
+    // Counted, because a word may hold a zero byte.
+    const bool is_whole = end == line.words[i].c_str() + line.words[i].size();
+    if (!is_whole || !std::isfinite(number)) {
+      throw InputError(path + ":" + std::to_string(line.number) + ": '" + Shown(line.words[i]) +
                        "' is not a finite number");
     }
     numbers.push_back(number);

@@ -14,7 +14,7 @@ struct TextLine {
 };
 
 /// The lines that are neither empty nor a comment (#). Throws InputError naming the file where it
-/// cannot be read.
+/// cannot be read, or has more than 1,000,000 lines or one of more than 20,000 bytes.
 std::vector<TextLine> ReadTextLines(const std::string& path);
 
 /// The words from number `first` on as finite numbers. Throws InputError naming file, line and

@@ -4,14 +4,18 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "common/util/image_header.h"
+
 namespace airdos {
 namespace {
 
-// The decoders of files need a header and a few bytes to look at before they may be asked.
-constexpr std::size_t kMinFileBytes = 16;
-
 std::optional<cv::Mat> DecodeFile(const image_t& message, int flags) {
-  if (message.data.size() < kMinFileBytes) return std::nullopt;
+  // What the file claims is looked at before the decoder makes room for it.
+  const std::optional<ImageHeader> header =
+      ReadImageHeader(message.data.data(), message.data.size());
+  if (!header || header->width != message.width || header->height != message.height) {
+    return std::nullopt;
+  }
   try {
     const cv::Mat file(1, static_cast<int>(message.data.size()), CV_8UC1,
                        const_cast<unsigned char*>(message.data.data()));
@@ -20,7 +24,7 @@ std::optional<cv::Mat> DecodeFile(const image_t& message, int flags) {
       return std::nullopt;
     }
     return image;
-  } catch (const cv::Exception&) {  // e.g. a header that claims more pixels than OpenCV allows
+  } catch (const cv::Exception&) {  // e.g. a kind of file that OpenCV does not know
     return std::nullopt;
   }
 }

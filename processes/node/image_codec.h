@@ -11,8 +11,9 @@ namespace airdos {
 
 /// Pixels of an image message, width x height as its header says: 8-bit grey (CV_8UC1) or
 /// blue-green-red (CV_8UC3), whatever the encoding. Nothing where the bytes do not decode, where
-/// the decoded picture has another size than the header says, or where the encoding is unknown. A
-/// result never points into the message.
+/// the file has another size than the message says (looked at before it is decoded, see
+/// common/util/image_header.h), or where the encoding is unknown. A result never points into the
+/// message.
 std::optional<cv::Mat> DecodeGray(const image_t& message);
 std::optional<cv::Mat> DecodeColor(const image_t& message);
 

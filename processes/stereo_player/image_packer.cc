@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/util/error.h"
+#include "common/util/image_header.h"
 
 namespace airdos {
 namespace {
@@ -54,8 +55,13 @@ bool ImagePacker::PackUnchanged(const std::vector<std::uint8_t>& file, image_t* 
 
 void ImagePacker::Pack(const std::vector<std::uint8_t>& file, const std::string& name,
                        image_t* message) {
-  const cv::Mat image =
-      file.empty() ? cv::Mat() : cv::imdecode(file, cv::IMREAD_ANYCOLOR);  // 8 bit, grey or BGR
+  cv::Mat image;
+  try {
+    if (ReadImageHeader(file.data(), file.size()))
+      image = cv::imdecode(file, cv::IMREAD_ANYCOLOR);  // 8 bit, grey or BGR
+  } catch (const cv::Exception&) {
+    image.release();
+  }
   if (image.empty()) throw InputError(name + ": is no image that can be decoded");
   message->width = image.cols;
   message->height = image.rows;

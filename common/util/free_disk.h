@@ -1,0 +1,18 @@
+#ifndef AIRDOS_COMMON_UTIL_FREE_DISK_H_
+#define AIRDOS_COMMON_UTIL_FREE_DISK_H_
+
+#include <cstdint>
+#include <string>
+
+namespace airdos {
+
+/// What a recorder leaves to others: 100 MB, or a hundredth of a disk of less than 10 GB.
+std::int64_t DiskReserveBytes(std::int64_t capacity_bytes);
+
+/// Why nothing more should be written to the file system that holds `path`, or an empty text. A
+/// file system that does not say what is free is taken to have room.
+std::string WhyDiskIsFull(const std::string& path);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_UTIL_FREE_DISK_H_
