@@ -101,7 +101,9 @@ MinimizerSummary CeresMinimizer::Minimize(const MinimizerOptions& options) {
   summary.initial_cost = std::max(report.initial_cost, 0.0);  // Ceres says -1 where it gave up
   summary.final_cost = std::max(report.final_cost, 0.0);
   summary.has_converged = report.termination_type == ceres::CONVERGENCE;
-  summary.num_iterations = report.num_successful_steps + report.num_unsuccessful_steps;
+  // Ceres says -1 where it gave up.
+  summary.num_iterations = std::max(report.num_successful_steps, 0);
+  summary.num_iterations += std::max(report.num_unsuccessful_steps, 0);
   return summary;
 }
 

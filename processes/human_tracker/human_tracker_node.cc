@@ -64,17 +64,26 @@ void HumanTrackerNode::StartSession(const Header& header) {
                                             HumanId{FirstRunningNumber(header.seq, kMostPerFrame)});
 }
 
+bool HumanTrackerNode::Fits(const std::optional<cv::Mat>& image, const char* channel) {
+  if (image && image->size() == cv::Size(camera().width, camera().height)) return true;
+  ++counters(channel).num_rejected;
+  counters(channel).last_reject =
+      image ? "its size is not that of the calibration" : "the image does not decode";
+  return false;
+}
+
 void HumanTrackerNode::ProcessFrame(const Header& header, HumanTrackerInputs inputs) {
   PeopleFrame frame;
   if (inputs.left_image) {
     const std::optional<cv::Mat> color = DecodeColor(*inputs.left_image);
-    if (color) {
+    if (Fits(color, channel::kCameraLeft)) {
       frame.left_color = *color;
       cv::cvtColor(*color, frame.left_gray, cv::COLOR_BGR2GRAY);
     }
   }
   if (inputs.right_image) {
-    frame.right_gray = DecodeGray(*inputs.right_image).value_or(cv::Mat());
+    const std::optional<cv::Mat> gray = DecodeGray(*inputs.right_image);
+    if (Fits(gray, channel::kCameraRight)) frame.right_gray = *gray;
   }
   frame.left = PeopleOf(inputs.left_keypoints);
   frame.right = PeopleOf(inputs.right_keypoints);

@@ -21,8 +21,8 @@ struct HumanTrackerInputs {
 };
 
 /// CAMERA_LEFT, CAMERA_RIGHT, PERSON_KEYPOINTS_LEFT, PERSON_KEYPOINTS_RIGHT -> HUMAN_OBSERVATIONS:
-/// one message a frame, empty if nobody was found. An image that is missing or does not decode is
-/// done without; so are keypoints.
+/// one message a frame, empty if nobody was found. An image that is missing, does not decode or has
+/// another size than the calibration says is done without; so are keypoints.
 class HumanTrackerNode : public FrameNode<HumanTrackerInputs> {
  public:
   explicit HumanTrackerNode(const HumanTrackerOptions& options);
@@ -32,6 +32,9 @@ class HumanTrackerNode : public FrameNode<HumanTrackerInputs> {
   void ProcessFrame(const Header& header, HumanTrackerInputs inputs) override;
 
  private:
+  /// Whether the image has the size that the calibration says; counts a reject otherwise.
+  bool Fits(const std::optional<cv::Mat>& image, const char* channel);
+
   HumanTrackerOptions options_;
   std::unique_ptr<HumanTracker> tracker_;
 };

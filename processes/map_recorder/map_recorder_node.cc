@@ -6,6 +6,7 @@
 
 #include "common/map/map_export.h"
 #include "common/util/error.h"
+#include "common/util/free_disk.h"
 #include "common/util/version.h"
 
 namespace airdos {
@@ -128,10 +129,7 @@ MapRecorderNode::MapRecorderNode(const MapRecorderOptions& options)
   Subscribe<pose_t>(channel::kGroundTruth,
                     [this](pose_t&& message) { return AddGroundTruth(message); });
   Subscribe<stereo_calibration_t>(channel::kCalibration, [this](stereo_calibration_t&& message) {
-    std::map<std::int64_t, StereoCamera>& cameras = cameras_[message.session];
-    cameras[message.seq] = ToStereoCamera(message);
-    cameras.erase(std::next(cameras.begin()), cameras.end());  // the earliest is enough
-    return std::string();
+    return AddCalibration(message);
   });
   MakeDirectory(options_.directory);
   const std::string probe = options_.directory + "/.airdos_can_write";
@@ -155,8 +153,12 @@ void MapRecorderNode::Finish() {
 
 void MapRecorderNode::StartSession(const Header& header) {
   if (file_ != nullptr) CloseSession();
-  ++num_sessions_;
   session_ = header.session;
+  if (num_sessions_ >= kMaxSessions) {
+    throw InputError(options_.directory + ": session " + std::to_string(session_) +
+                     " is not recorded: there were " + std::to_string(kMaxSessions) + " before it");
+  }
+  ++num_sessions_;
   session_directory_ = options_.directory;
   if (num_sessions_ > 1) session_directory_ += "/session_" + std::to_string(num_sessions_);
   if (num_sessions_ > 1 || !Resume(header)) {
@@ -242,7 +244,20 @@ void MapRecorderNode::TakeOldGroundTruth(std::int64_t seq) {
   }
 }
 
+std::string MapRecorderNode::AddCalibration(const stereo_calibration_t& message) {
+  std::map<std::int64_t, StereoCamera>& cameras = cameras_[message.session];
+  cameras[message.seq] = ToStereoCamera(message);
+  cameras.erase(std::next(cameras.begin()), cameras.end());  // the earliest is enough
+  if (cameras_.size() > kMaxSessionsAhead) {
+    const auto oldest = cameras_.begin();  // sources choose growing numbers
+    cameras_.erase(oldest->first == session_ ? std::next(oldest) : oldest);
+  }
+  return "";
+}
+
 std::string MapRecorderNode::AddGroundTruth(const pose_t& message) {
+  if (ground_truth_.count(message.session) == 0 && ground_truth_.size() > kMaxSessionsAhead)
+    return "too many sessions without a frame";
   if (num_ground_truth_ >= kMaxGroundTruth) return "too many ground truth poses";
   std::map<std::int64_t, GroundTruth>& poses = ground_truth_[message.session];
   const GroundTruth truth = {message.axes, message.utime,
@@ -266,6 +281,8 @@ void MapRecorderNode::SetGroundTruth(const std::pair<const std::int64_t, GroundT
 
 void MapRecorderNode::Append(const MapChunk& chunk) {
   try {
+    const std::string why = WhyDiskIsFull(session_directory_);
+    if (!why.empty()) throw InputError(session_directory_ + ": " + why + ": recording ends");
     file_->Append(chunk);
   } catch (const InputError& error) {
     failure_ = error.what();

@@ -51,6 +51,10 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   static constexpr std::size_t kMaxGroundTruth = 1000000;
   static constexpr std::size_t kGroundTruthPerNote = 10;
   static constexpr std::int64_t kGroundTruthLag = 1000;
+  /// Each session has a folder: in one more nothing is recorded.
+  static constexpr int kMaxSessions = 1000;
+  /// Calibrations and ground truth of so many sessions wait for their first frame.
+  static constexpr std::size_t kMaxSessionsAhead = 100;
 
   /// Throws InputError where the directory cannot be made or written to.
   explicit MapRecorderNode(const MapRecorderOptions& options);
@@ -66,8 +70,8 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
 
  protected:
   void StartSession(const Header& header) override;
-  /// Throws InputError once where the disk does not take the chunk; nothing is recorded from then
-  /// on, what was is kept.
+  /// Throws InputError once where the disk does not take the chunk or has hardly any room left;
+  /// nothing is recorded from then on, what was is kept.
   void ProcessFrame(const Header& header, MapRecorderInputs inputs) override;
 
  private:
@@ -77,6 +81,7 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
     Se3 pose;
   };
 
+  std::string AddCalibration(const stereo_calibration_t& message);
   std::string AddGroundTruth(const pose_t& message);
   /// Goes on with the map of a recorder that was killed; false if there is none.
   bool Resume(const Header& header);

@@ -1,7 +1,5 @@
 #include "processes/node/channel_digests.h"
 
-#include <algorithm>
-
 #include "common/util/digest.h"
 #include "processes/node/log_source.h"
 
@@ -10,9 +8,8 @@ namespace airdos {
 void ChannelDigests::Add(const std::string& channel, const void* data, std::size_t size) {
   Channel& entry = channels_[channel];
   const Header header = PeekHeader(data, size).value_or(Header{});
-  const auto session = std::find(entry.sessions.begin(), entry.sessions.end(), header.session);
-  const auto rank = static_cast<std::size_t>(session - entry.sessions.begin());
-  if (session == entry.sessions.end()) entry.sessions.push_back(header.session);
+  const std::size_t rank =
+      entry.session_ranks.try_emplace(header.session, entry.session_ranks.size()).first->second;
   Digest digest;
   digest.Add(data, size);
   entry.payload_digests[{rank, header.seq}].push_back(digest.Hex());

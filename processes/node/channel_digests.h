@@ -25,7 +25,7 @@ class ChannelDigests {
  private:
   using Key = std::pair<std::size_t, std::int64_t>;  // rank of the session, seq
   struct Channel {
-    std::vector<std::int64_t> sessions;
+    std::map<std::int64_t, std::size_t> session_ranks;  // in order of appearance
     std::map<Key, std::vector<std::string>> payload_digests;
   };
   std::map<std::string, Channel> channels_;

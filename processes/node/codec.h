@@ -3,9 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
+#include "airdos/image_t.hpp"
+#include "airdos/person_mask_t.hpp"
 #include "common/util/check.h"
 
 namespace airdos {
@@ -19,11 +20,22 @@ std::vector<std::uint8_t> Encode(const Message& message) {
   return bytes;
 }
 
+/// Larger messages are refused before they are decoded, as vectors of structures take up to twenty
+/// times the room of their bytes. Ours stay below 128 kB; images may be raw and of 12 megapixels.
+inline constexpr std::size_t kMaxImageMessageBytes = 40u << 20;
+inline constexpr std::size_t kMaxOtherMessageBytes = 1u << 20;
+template <class Message>
+inline constexpr std::size_t kMaxMessageBytes = kMaxOtherMessageBytes;
+template <>
+inline constexpr std::size_t kMaxMessageBytes<image_t> = kMaxImageMessageBytes;
+template <>
+inline constexpr std::size_t kMaxMessageBytes<person_mask_t> = kMaxImageMessageBytes;
+
 /// False unless the bytes are exactly one message of this type. The build bounds the generated
 /// decode(), so hostile counts cost neither time nor memory (lcmtypes/CMakeLists.txt).
 template <class Message>
 bool Decode(const void* data, std::size_t size, Message* message) {
-  if (size > static_cast<std::size_t>(std::numeric_limits<int>::max())) return false;
+  if (size > kMaxMessageBytes<Message>) return false;
   return message->decode(data, 0, static_cast<int>(size)) == static_cast<int>(size);
 }
 

@@ -31,13 +31,24 @@ bool FrameJoiner::MayHavePredecessor(const Key& key) const {
   return false;
 }
 
+std::int64_t FrameJoiner::RankOf(std::int64_t session) {
+  const auto [entry, is_new] = session_ranks_.try_emplace(session, num_sessions_);
+  const std::int64_t rank = entry->second;
+  if (!is_new) return rank;
+  ++num_sessions_;
+  if (session_ranks_.size() > kMaxSessions) {
+    session_ranks_.erase(
+        std::min_element(session_ranks_.begin(), session_ranks_.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; }));
+  }
+  return rank;
+}
+
 FrameJoiner::Arrival FrameJoiner::Announce(int input, const Header& header, Key* key) {
   const auto slot = static_cast<std::size_t>(input);
   AIRDOS_CHECK(input >= 0 && slot < num_inputs_);
-  const auto session = std::find(sessions_.begin(), sessions_.end(), header.session);
-  key->session_rank = static_cast<int>(session - sessions_.begin());
+  key->session_rank = RankOf(header.session);
   key->seq = header.seq;
-  if (session == sessions_.end()) sessions_.push_back(header.session);
 
   // Not "is the frame done": that would depend on how far the other channels are.
   if (IsOvertaken(slot, *key)) return Arrival::kLate;

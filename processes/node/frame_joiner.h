@@ -20,11 +20,12 @@ namespace airdos {
 /// frame is settled once each input has arrived or has been overtaken, and no older frame can
 /// appear any more.
 ///
-/// Limit: the sessions must appear in the same order on every channel.
+/// Limits: the sessions must appear in the same order on every channel. Only the last kMaxSessions
+/// are remembered; one that comes back after as many others is a new one.
 class FrameJoiner {
  public:
   struct Key {
-    int session_rank = 0;
+    std::int64_t session_rank = 0;
     std::int64_t seq = 0;
     friend bool operator<(const Key& a, const Key& b) {
       return a.session_rank != b.session_rank ? a.session_rank < b.session_rank : a.seq < b.seq;
@@ -37,6 +38,7 @@ class FrameJoiner {
     kTooFar,  ///< more than kMaxAhead beyond its channel: nonsense, or all that follows were late
   };
   static constexpr std::int64_t kMaxAhead = 1000000;
+  static constexpr std::size_t kMaxSessions = 1000;
   struct Frame {
     Key key;
     Header header;
@@ -61,12 +63,15 @@ class FrameJoiner {
   void FinishOldest(std::int64_t* num_skipped);
   std::size_t num_pending() const { return pending_.size(); }
 
+  std::size_t num_sessions_known() const { return session_ranks_.size(); }
+
  private:
   struct Pending {
     Header header;
     std::vector<bool> arrived;
   };
 
+  std::int64_t RankOf(std::int64_t session);
   /// Whether nothing older than or equal to `key` can come on the channel of `input` any more.
   bool IsOvertaken(std::size_t input, const Key& key) const;
   /// Whether a frame between the last one that is done and `key` could still appear.
@@ -74,7 +79,8 @@ class FrameJoiner {
 
   std::size_t num_inputs_;
   std::int64_t reorder_window_;
-  std::vector<std::int64_t> sessions_;      // in order of appearance
+  std::map<std::int64_t, std::int64_t> session_ranks_;  // by session: how many appeared before it
+  std::int64_t num_sessions_ = 0;
   std::vector<std::optional<Key>> newest_;  // per input
   std::map<Key, Pending> pending_;
   std::optional<Key> last_done_;

@@ -2,6 +2,7 @@
 #define AIRDOS_PROCESSES_NODE_FRAME_NODE_H_
 
 #include <algorithm>
+#include <deque>
 #include <limits>
 #include <map>
 #include <memory>
@@ -29,9 +30,12 @@ class FrameNode : public Node {
   /// of frame k could be given up only when frame k + 1 + window is there, and that frame waits
   /// for the result of frame k.
   static constexpr int kReorderWindow = 0;
-  /// Frames that may wait at once; the oldest is worked on incomplete beyond it, so memory stays
-  /// bounded.
+  /// Frames that may wait at once, and bytes of their messages; the oldest is worked on incomplete
+  /// beyond it (dropped, in realtime pace), so memory stays bounded.
   static constexpr std::size_t kMaxPending = 1000;
+  static constexpr std::size_t kMaxPendingBytes = 512u << 20;
+  /// Sessions whose calibration is kept; beyond it the one that was heard first is forgotten.
+  static constexpr std::size_t kMaxCalibrations = 100;
 
   using Node::Node;
 
@@ -45,7 +49,7 @@ class FrameNode : public Node {
     if (!frame) return false;
     const bool is_ready =
         frame->settled && HasCalibration(frame->header) && MissingFeedback(frame->header).empty();
-    if (!is_ready && Joiner().num_pending() <= kMaxPending) return false;
+    if (!is_ready && !IsOverfull()) return false;
     Work(*frame);
     return true;
   }
@@ -59,9 +63,8 @@ class FrameNode : public Node {
 
   void SkipToNewest() override {
     const std::optional<FrameJoiner::Key> newest = Joiner().NewestComplete();
-    if (!newest) return;
-    while (Joiner().Oldest()->key < *newest) {
-      inputs_.erase(Joiner().Oldest()->key);
+    while ((newest && Joiner().Oldest()->key < *newest) || IsOverfull()) {
+      DropInputs(Joiner().Oldest()->key);
       std::int64_t num_absent = 0;
       Joiner().FinishOldest(&num_absent);
       ++mutable_frames().num_skipped;
@@ -124,6 +127,7 @@ class FrameNode : public Node {
     Subscribe<stereo_calibration_t>(channel::kCalibration, [this](stereo_calibration_t&& message) {
       const StereoCamera camera = ToStereoCamera(message);
       const auto [known, is_new] = calibrations_.try_emplace(message.session, camera);
+      if (is_new) RememberCalibrated(message.session);
       if (is_new || known->second == camera) return std::string();
       return std::string("calibration changes within a session");
     });
@@ -140,6 +144,10 @@ class FrameNode : public Node {
   const StereoCamera& camera() const { return camera_; }
 
  private:
+  struct Slot {
+    Inputs inputs;
+    std::size_t num_bytes = 0;  // of the messages that they came in
+  };
   template <class Message>
   struct PartSet {
     FrameJoiner::Key key;
@@ -183,8 +191,36 @@ class FrameNode : public Node {
     FrameJoiner::Key key;
     const FrameJoiner::Arrival arrival = Joiner().Add(input, header, &key);
     if (arrival != FrameJoiner::Arrival::kNew) return Refused(arrival, channel, header);
-    fill(inputs_[key]);
+    Slot& slot = inputs_[key];
+    slot.num_bytes += num_bytes_received();
+    num_pending_bytes_ += num_bytes_received();
+    fill(slot.inputs);
     return "";
+  }
+
+  bool IsOverfull() {
+    return Joiner().num_pending() > kMaxPending ||
+           (num_pending_bytes_ > kMaxPendingBytes && Joiner().num_pending() > 1);
+  }
+
+  void DropInputs(const FrameJoiner::Key& key) {
+    const auto slot = inputs_.find(key);
+    if (slot == inputs_.end()) return;
+    num_pending_bytes_ -= slot->second.num_bytes;
+    inputs_.erase(slot);
+  }
+
+  void ForgetCalibration(std::int64_t session) {
+    calibrations_.erase(session);
+    calibrated_.erase(std::remove(calibrated_.begin(), calibrated_.end(), session),
+                      calibrated_.end());
+  }
+
+  void RememberCalibrated(std::int64_t session) {
+    calibrated_.push_back(session);
+    if (calibrated_.size() <= kMaxCalibrations) return;
+    calibrations_.erase(calibrated_.front());
+    calibrated_.pop_front();
   }
 
   std::string Refused(FrameJoiner::Arrival arrival, const std::string& channel,
@@ -201,8 +237,8 @@ class FrameNode : public Node {
   }
 
   void Work(const FrameJoiner::Frame& frame) {
-    Inputs inputs = std::move(inputs_[frame.key]);
-    inputs_.erase(frame.key);
+    Inputs inputs = std::move(inputs_[frame.key].inputs);
+    DropInputs(frame.key);
     std::int64_t num_absent = 0;
     Joiner().FinishOldest(&num_absent);
     set_last_finished(frame.header);
@@ -216,7 +252,7 @@ class FrameNode : public Node {
     ++mutable_frames().num_done;
     if (needs_calibration_) camera_ = calibrations_.at(frame.header.session);
     if (!session_ || *session_ != frame.header.session) {
-      if (session_) calibrations_.erase(*session_);
+      if (session_) ForgetCalibration(*session_);
       session_ = frame.header.session;
       StartSession(frame.header);
     }
@@ -225,9 +261,11 @@ class FrameNode : public Node {
 
   std::vector<std::string> channels_of_inputs_;
   std::unique_ptr<FrameJoiner> joiner_;
-  std::map<FrameJoiner::Key, Inputs> inputs_;
+  std::map<FrameJoiner::Key, Slot> inputs_;
+  std::size_t num_pending_bytes_ = 0;
   bool needs_calibration_ = false;
   std::map<std::int64_t, StereoCamera> calibrations_;  // by session
+  std::deque<std::int64_t> calibrated_;                // their sessions, first heard first
   StereoCamera camera_;
   std::optional<std::int64_t> session_;
 };

@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kPollTimeout_ms = 50;
 constexpr double kStatusPeriod_s = 1.0;
+constexpr int kMaxDrained = 1000;  // messages that are taken in at once
 
 channel_status_t StatusOf(const std::string& channel, const ChannelCounters& counters) {
   channel_status_t status = {};
@@ -67,7 +68,8 @@ void LcmRunner::Receive(int timeout_ms) {
   // In lock-step one message at a time, so that the time of the last one is that of the input which
   // made the frame complete.
   if (!transport_->Poll(timeout_ms) || !is_realtime) return;
-  while (!StopRequested() && transport_->Poll(0)) {
+  // Bounded: whoever floods a channel must not keep the process from its work.
+  for (int i = 0; i < kMaxDrained && !StopRequested() && transport_->Poll(0); ++i) {
   }
   node_->SkipToNewest();
 }
@@ -89,8 +91,7 @@ bool LcmRunner::WorkOnOne() {
     has_worked = node_->Step();
   } catch (const std::exception& error) {
     // The frame is over for the node; the next one may be better.
-    last_error_ = error.what();
-    Say("error: " + last_error_);
+    SayError(error.what());
   }
   if (has_worked) PublishOutput();
   if (has_worked || node_->num_pending() == 0) {
@@ -141,8 +142,7 @@ void LcmRunner::CompleteAfterDeadline() {
   try {
     node_->CompleteOldest();
   } catch (const std::exception& error) {
-    last_error_ = error.what();
-    Say("error: " + last_error_);
+    SayError(error.what());
   }
   PublishOutput();
   progress_s_ = SteadyClock_s();
@@ -216,6 +216,14 @@ void LcmRunner::PublishBytes(const std::string& channel, const std::vector<std::
   last_error_ = "cannot publish on " + channel;
   if (!publish_failure_said_) Say(last_error_ + ": is the network gone?");
   publish_failure_said_ = true;
+}
+
+void LcmRunner::SayError(const std::string& error) {
+  constexpr std::size_t kMaxErrorsSaid = 100;  // stderr may go to a disk
+  last_error_ = error.substr(0, 500);          // STATUS takes no text that is much longer
+  if (errors_said_.size() < kMaxErrorsSaid && errors_said_.insert(error).second) {
+    Say("error: " + error + " (said once; STATUS has the last error)");
+  }
 }
 
 void LcmRunner::Say(const std::string& line) {

@@ -53,6 +53,7 @@ class LcmRunner {
   void PublishStatus(std::int8_t state);
   void PublishStatusWhenDue();
   void Say(const std::string& line);
+  void SayError(const std::string& error);
   /// Says which channel has rejected a message for the first time, and why.
   void SayFirstRejects();
   void SayCounters();
@@ -71,6 +72,7 @@ class LcmRunner {
   std::set<std::string> silent_said_;   // waiting_for() texts that were said already
   std::set<std::string> rejects_said_;  // channels; later rejects are counted in STATUS only
   std::map<std::string, std::int64_t> silent_;  // channels, and how much had come on them by then
+  std::set<std::string> errors_said_;
   bool is_stalled_ = false;
   bool publish_failure_said_ = false;
   std::string last_error_;

@@ -83,22 +83,23 @@ LcmTransport::LcmTransport(const std::string& url) : url_(url) {
 
 LcmTransport::~LcmTransport() = default;
 
-void LcmTransport::SubscribeTo(const std::string& regex) {
+void LcmTransport::SubscribeTo(const std::string& regex, int max_queued) {
   const StderrSilencer silencer;
   lcm::Subscription* subscription = lcm_->subscribe(regex, &LcmTransport::OnMessage, this);
   if (subscription == nullptr) FailToOpen(url_);
-  // Unbounded: with a bound LCM drops the newest message, and no counter shows it.
-  subscription->setQueueCapacity(0);
+  // Far above LCM's 30, but bounded: beyond it LCM drops the newest message, which the image
+  // numbers show. Without a bound, whoever sends faster than we work would take all memory.
+  subscription->setQueueCapacity(max_queued);
 }
 
 void LcmTransport::Subscribe(const std::string& channel, Handler handler) {
-  SubscribeTo(channel);
+  SubscribeTo(channel, kMaxQueuedOfChannel);
   handlers_[channel] = std::move(handler);
 }
 
 void LcmTransport::SubscribeAll(
     std::function<void(const std::string&, const void*, std::size_t, std::int64_t)> handler) {
-  SubscribeTo(".*");
+  SubscribeTo(".*", kMaxQueuedOfAll);
   all_handler_ = std::move(handler);
 }
 

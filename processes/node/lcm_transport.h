@@ -23,11 +23,14 @@ std::string DefaultLcmUrl();
 void InstallStopSignals();
 bool StopRequested();
 
-/// Bytes on channels over LCM, nothing else: unbounded queues (nothing is dropped behind the
-/// socket), one thread, exceptions kept away from LCM's C code.
+/// Bytes on channels over LCM, nothing else: long queues (what is dropped behind the socket would
+/// have been minutes late), one thread, exceptions kept away from LCM's C code.
 class LcmTransport {
  public:
   /// Size and receive time (us, wall clock) of a message as LCM's thread took it from the network.
+  /// Messages that wait for Poll(), of one channel or of all.
+  static constexpr int kMaxQueuedOfChannel = 1000;
+  static constexpr int kMaxQueuedOfAll = 5000;
   using Handler =
       std::function<void(const void* data, std::size_t size, std::int64_t receive_utime)>;
 
@@ -57,7 +60,7 @@ class LcmTransport {
 
  private:
   void OnMessage(const lcm::ReceiveBuffer* buffer, const std::string& channel);
-  void SubscribeTo(const std::string& regex);
+  void SubscribeTo(const std::string& regex, int max_queued);
 
   std::string url_;
   std::unique_ptr<lcm::LCM> lcm_;

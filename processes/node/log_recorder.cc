@@ -8,6 +8,7 @@
 
 #include "airdos/process_status_t.hpp"
 #include "common/util/error.h"
+#include "common/util/free_disk.h"
 #include "common/util/version.h"
 #include "processes/node/channels.h"
 #include "processes/node/frame_joiner.h"
@@ -38,6 +39,11 @@ std::regex ToRegex(const std::string& text) {
   }
 }
 
+bool CarriesEveryImage(const std::string& channel) {
+  return IsOutputChannel(channel) || channel == channel::kCameraLeft ||
+         channel == channel::kCameraRight;
+}
+
 void PublishStatus(const LogRecorder& recorder, LcmTransport* transport, std::int8_t state,
                    const std::string& error) {
   process_status_t status = {};
@@ -47,7 +53,7 @@ void PublishStatus(const LogRecorder& recorder, LcmTransport* transport, std::in
   status.pid = getpid();
   status.state = state;
   status.memory_mb = ResidentMemory_mb();
-  status.last_error = error;
+  status.last_error = error.substr(0, 500);
   for (const auto& [name, counters] : recorder.channels()) {
     channel_status_t channel = {};
     channel.channel = name;
@@ -72,16 +78,35 @@ void LogRecorder::Take(const std::string& channel, const void* data, std::size_t
     ++num_rejected_;
     return;
   }
+  CheckDisk(size);
   writer_.Append(receive_utime, channel, data, size);
-  ++channels_[channel].num_received;
+  ++CountersOf(channel).num_received;
   CountGap(channel, data, size);
 }
 
+ChannelCounters& LogRecorder::CountersOf(const std::string& channel) {
+  const auto known = channels_.find(channel);
+  if (known != channels_.end()) return known->second;
+  // The channels that are counted for gaps are never among the others, whatever came first.
+  return channels_[channels_.size() < kMaxChannels || CarriesEveryImage(channel) ? channel
+                                                                                 : kOtherChannels];
+}
+
+void LogRecorder::CheckDisk(std::size_t num_bytes) {
+  constexpr std::size_t kCheckEveryBytes = 8u << 20;
+  num_bytes_unchecked_ += num_bytes;
+  if (num_bytes_unchecked_ < kCheckEveryBytes) return;
+  num_bytes_unchecked_ = 0;
+  const std::string why = WhyDiskIsFull(options_.path);
+  if (!why.empty()) {
+    throw WriteError(options_.path + ": " + why + ": recording ends; the " +
+                     std::to_string(writer_.num_events()) + " events before are kept");
+  }
+}
+
 void LogRecorder::CountGap(const std::string& channel, const void* data, std::size_t size) {
-  const bool carries_every_image = IsOutputChannel(channel) || channel == channel::kCameraLeft ||
-                                   channel == channel::kCameraRight;
   const std::optional<Header> header = PeekHeader(data, size);
-  if (!carries_every_image || !header) return;
+  if (!CarriesEveryImage(channel) || !header) return;
   const auto [entry, is_first] = newest_.emplace(channel, *header);
   Header& newest = entry->second;
   if (!is_first && newest.session == header->session) {

@@ -24,11 +24,17 @@ struct LogRecorderOptions {
 /// Writes what arrives into an event log and counts it. Knows no network and no clock.
 class LogRecorder {
  public:
+  /// Channels that are counted, each by its name; further ones together, as kOtherChannels. STATUS
+  /// holds no more.
+  static constexpr std::size_t kMaxChannels = 90;
+  static constexpr char kOtherChannels[] = "(others)";
+
   /// Throws InputError if the file cannot be created (or is there already), or for a wrong regular
   /// expression.
   explicit LogRecorder(const LogRecorderOptions& options);
 
-  /// Throws WriteError. LCM's own LCM_SELF_TEST is left out, and so is what no log can hold.
+  /// Throws WriteError, also where the disk has hardly any room left. LCM's own LCM_SELF_TEST is
+  /// left out, and so is what no log can hold.
   void Take(const std::string& channel, const void* data, std::size_t size,
             std::int64_t receive_utime);
   void Sync() { writer_.Sync(); }
@@ -41,6 +47,8 @@ class LogRecorder {
   std::string Summary() const;
 
  private:
+  ChannelCounters& CountersOf(const std::string& channel);
+  void CheckDisk(std::size_t num_bytes);
   void CountGap(const std::string& channel, const void* data, std::size_t size);
 
   LogRecorderOptions options_;
@@ -49,6 +57,7 @@ class LogRecorder {
   std::map<std::string, ChannelCounters> channels_;
   std::map<std::string, Header> newest_;
   std::int64_t num_rejected_ = 0;
+  std::size_t num_bytes_unchecked_ = 0;  // since the disk was asked how much room it has
 };
 
 /// Records until StopRequested(), and says STATUS once a second, so that a source can wait for the

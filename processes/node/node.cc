@@ -15,6 +15,7 @@ void Node::Receive(const std::string& channel, const void* data, std::size_t siz
   if (it == handlers_.end()) return;
   ChannelCounters& counters = channels_[channel];
   ++counters.num_received;
+  num_bytes_received_ = size;
   std::string reason;
   try {
     reason = it->second(data, size);
@@ -23,7 +24,7 @@ void Node::Receive(const std::string& channel, const void* data, std::size_t siz
   }
   if (reason.empty()) return;
   ++counters.num_rejected;
-  counters.last_reject = reason;
+  counters.last_reject = reason.substr(0, 500);  // STATUS takes no text that is much longer
 }
 
 std::vector<Envelope> Node::TakeOutput() { return std::exchange(output_, {}); }

@@ -61,7 +61,8 @@ class Node {
   /// Works on the oldest frame without the inputs it still lacks: after a deadline, or at the end
   /// of a log. False if none waits.
   virtual bool CompleteOldest() = 0;
-  /// Drops (and counts) the frames that are older than the newest complete one: realtime pace.
+  /// Drops (and counts) the frames that are older than the newest complete one, and the oldest
+  /// where too many wait: realtime pace.
   virtual void SkipToNewest() = 0;
   /// Channels that the oldest waiting frame lacks and that can still bring it, separated by spaces;
   /// empty if no frame waits.
@@ -87,6 +88,7 @@ class Node {
     channels_[channel];
     handlers_[channel] = [handler](const void* data, std::size_t size) -> std::string {
       Message message;
+      if (size > kMaxMessageBytes<Message>) return std::to_string(size) + " bytes are too many";
       if (!Decode(data, size, &message)) return "does not decode";
       const std::string reason = Validate(message);
       return reason.empty() ? handler(std::move(message)) : reason;
@@ -100,6 +102,8 @@ class Node {
 
   ChannelCounters& counters(const std::string& channel) { return channels_[channel]; }
   FrameCounters& mutable_frames() { return frames_; }
+  /// Bytes of the message that a handler works on.
+  std::size_t num_bytes_received() const { return num_bytes_received_; }
   void set_last_finished(const Header& header) { last_finished_ = header; }
 
  private:
@@ -111,6 +115,7 @@ class Node {
   FrameCounters frames_;
   std::optional<Header> last_finished_;
   std::vector<Envelope> output_;
+  std::size_t num_bytes_received_ = 0;
 };
 
 }  // namespace airdos

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "common/human/skeleton.h"
+#include "common/util/image_header.h"
 #include "processes/node/conversions.h"
 
 namespace airdos {
@@ -15,11 +16,14 @@ constexpr double kMaxSeq = 1099511627776.0;          // 2^40
 constexpr double kMaxInt64 = 4611686018427387904.0;  // 2^62
 constexpr int kMaxImageSize_px = 8192;
 constexpr int kMaxPeople = 200;
-constexpr int kMaxFeatures = 20000;
+constexpr int kMaxFeatures = 5000;  // as many as frontend.yaml may ask for
+constexpr int kMaxLandmarks = 20000;
 constexpr int kMaxParts = 64;
 constexpr int kMaxFrames = 1000;
 constexpr int kMaxChannels = 100;
+constexpr std::size_t kMaxTextBytes = 1000;
 constexpr double kMaxPixel = 1e5;
+constexpr double kMinSigma_px = 1e-4;  // its inverse square must not swallow all other weights
 constexpr double kMaxLength_m = 1e7;
 constexpr double kMaxVariance_m2 = 1e12;
 constexpr double kQuaternionTolerance = 1e-3;
@@ -83,6 +87,11 @@ class Checker {
       seen |= bit;
     }
   }
+  /// A zero byte within would make the text another one in C, where LCM encodes it.
+  void Text(const char* field, const std::string& text) {
+    if (text.size() > kMaxTextBytes) Fail(field, text.size(), "letters are too many");
+    if (text.find('\0') != std::string::npos) Fail(field, text.size(), "letters with a zero in it");
+  }
   void Bytes(std::int64_t num_bytes, std::int64_t expected) {
     if (num_bytes != expected) {
       Fail("num_bytes", num_bytes, "must be " + std::to_string(expected));
@@ -112,6 +121,7 @@ class Checker {
 void CheckImageSize(int width, int height, Checker* check) {
   check->Range("width", width, 1, kMaxImageSize_px);
   check->Range("height", height, 1, kMaxImageSize_px);
+  check->Range("number of pixels", std::int64_t{width} * height, 1, kMaxImagePixels);
 }
 
 void CheckHuman(const human_observation_t& human, Checker* check) {
@@ -122,7 +132,7 @@ void CheckHuman(const human_observation_t& human, Checker* check) {
        {&human.u_left_px, &human.v_left_px, &human.u_right_px, &human.v_right_px}) {
     check->Ranges("joint's pixel", *pixels, -kMaxPixel, kMaxPixel);
   }
-  check->Positive("sigma_px", human.sigma_px);
+  check->Ranges("sigma_px", human.sigma_px, kMinSigma_px, kMaxPixel);
   for (const auto* coordinates : {&human.x_C_m, &human.y_C_m, &human.z_C_m}) {
     check->Ranges("joint's coordinate", *coordinates, -kMaxLength_m, kMaxLength_m);
   }
@@ -159,6 +169,7 @@ std::string Validate(const image_t& message) {
   Checker check(message);
   CheckImageSize(message.width, message.height, &check);
   check.Range("encoding", message.encoding, image_t::ENCODING_JPEG, image_t::ENCODING_RAW_BGR8);
+  if (!check.reason().empty()) return check.reason();  // of such a size no bytes can be told
   const std::int64_t num_pixels = std::int64_t{message.width} * message.height;
   if (message.encoding == image_t::ENCODING_RAW_GRAY8) check.Bytes(message.num_bytes, num_pixels);
   if (message.encoding == image_t::ENCODING_RAW_BGR8) {
@@ -180,6 +191,10 @@ std::string Validate(const stereo_calibration_t& message) {
                "and the other numbers are no camera: all must be above 0 and the principal point "
                "in the image");
   }
+  // A view of more than 178 degrees, or a baseline of less than a millimetre, is an error.
+  check.Range("fx_px", message.fx_px, 0.01 * message.width, kMaxPixel);
+  check.Range("fy_px", message.fy_px, 0.01 * message.height, kMaxPixel);
+  check.Range("baseline_m", message.baseline_m, 1e-3, 1000);
   return check.reason();
 }
 
@@ -238,7 +253,7 @@ std::string Validate(const static_features_t& message) {
     check.Range("u_right_px", message.u_right_px[i], -kMaxPixel, kMaxPixel);
   }
   check.Ranges("has_right", message.has_right, 0, 1);
-  check.Positive("sigma_px", message.sigma_px);
+  check.Ranges("sigma_px", message.sigma_px, kMinSigma_px, kMaxPixel);
   return check.reason();
 }
 
@@ -291,14 +306,14 @@ std::string Validate(const map_update_t& message) {
     check.Position("a frame's position_W_C", frame.position_W_C);
     check.Quaternion("a frame's orientation_W_C", frame.orientation_W_C);
   }
-  check.Count("num_landmarks", message.num_landmarks, kMaxFeatures);
+  check.Count("num_landmarks", message.num_landmarks, kMaxLandmarks);
   check.Ranges("landmark_id", message.landmark_id, 0, kMaxInt64);
   for (const auto* coordinates : {&message.x_W_m, &message.y_W_m, &message.z_W_m}) {
     check.Ranges("landmark's coordinate", *coordinates, -kMaxLength_m, kMaxLength_m);
   }
   check.Positive("sigma_m", message.sigma_m);
   check.Ranges("num_observations", message.num_observations, 0, INT32_MAX);
-  check.Count("num_removed", message.num_removed, kMaxFeatures);
+  check.Count("num_removed", message.num_removed, kMaxLandmarks);
   check.Ranges("removed_landmark_id", message.removed_landmark_id, 0, kMaxInt64);
   check.Count("num_humans", message.num_humans, kMaxPeople);
   for (const human_state_t& human : message.humans) CheckHuman(human, &check);
@@ -316,12 +331,17 @@ std::string Validate(const pose_t& message) {
 std::string Validate(const frame_done_t& message) {
   Checker check(message);
   if (message.process.empty()) check.Fail("process", 0, "letters: it must have a name");
+  check.Text("process", message.process);
   return check.reason();
 }
 
 std::string Validate(const process_status_t& message) {
   Checker check(message);
   if (message.process.empty()) check.Fail("process", 0, "letters: it must have a name");
+  for (const std::string* text :
+       {&message.process, &message.version, &message.waiting_for, &message.last_error}) {
+    check.Text("a text", *text);
+  }
   check.Range("state", message.state, process_status_t::STATE_STARTING,
               process_status_t::STATE_STOPPING);
   check.Count("pid", message.pid, INT32_MAX);
@@ -335,6 +355,8 @@ std::string Validate(const process_status_t& message) {
   }
   check.Count("num_channels", message.num_channels, kMaxChannels);
   for (const channel_status_t& channel : message.channels) {
+    check.Text("a channel", channel.channel);
+    check.Text("last_reject", channel.last_reject);
     for (const std::int64_t count :
          {channel.num_received, channel.num_missing, channel.num_duplicate, channel.num_rejected}) {
       check.Count("a channel counter", count, kMaxInt64);

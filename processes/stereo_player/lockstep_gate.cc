@@ -89,7 +89,7 @@ void LockstepGate::OnPublished(std::int64_t session, std::int64_t seq, double no
       process.progress_s = now_s;
       process.reminded_s = now_s;
     }
-    ++process.num_in_flight;
+    if (process.num_in_flight < kMaxInFlight) ++process.num_in_flight;
   }
   std::size_t most_in_flight = 1;
   for (const auto& [name, process] : processes_) {
@@ -154,6 +154,12 @@ void LockstepGate::GiveUp(const std::string& name, const std::string& why, Proce
   process->state = State::kGivenUp;
   process->num_in_flight = 0;
   process->reminded_s = now_s;
+}
+
+void LockstepGate::Note(const std::string& line) {
+  if (num_notes_ >= kMaxNotes) return;
+  ++num_notes_;
+  notes_.push_back(num_notes_ < kMaxNotes ? line : line + " (nothing more will be said)");
 }
 
 std::vector<std::string> LockstepGate::TakeNotes() { return std::exchange(notes_, {}); }

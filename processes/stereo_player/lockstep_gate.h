@@ -30,6 +30,13 @@ struct LockstepGateOptions {
 /// it gives one up it says so. Has no clock: times are handed in, in seconds of one steady clock.
 class LockstepGate {
  public:
+  /// In realtime pace nobody waits, so a process that never says FRAME_DONE has more and more to
+  /// do: further frames are not remembered.
+  static constexpr std::size_t kMaxInFlight = 1000;
+  /// Lines that it says in all; whoever sends STATUS with ever new process numbers would fill the
+  /// disk that stderr goes to.
+  static constexpr int kMaxNotes = 1000;
+
   LockstepGate(const LockstepGateOptions& options, double now_s);
 
   void OnStatus(const process_status_t& status, double now_s);
@@ -40,6 +47,8 @@ class LockstepGate {
   bool MayPublish(double now_s);
   /// Whether every process has done every frame that was published, or was given up.
   bool IsAllDone(double now_s);
+
+  std::size_t num_remembered() const { return published_.size(); }
 
   /// What people should know, a line each; given once.
   std::vector<std::string> TakeNotes();
@@ -67,7 +76,7 @@ class LockstepGate {
   void CheckWaits(double now_s);
   void CheckWait(const std::string& name, Process* process, double now_s);
   void GiveUp(const std::string& name, const std::string& why, Process* process, double now_s);
-  void Note(const std::string& line) { notes_.push_back(line); }
+  void Note(const std::string& line);
 
   LockstepGateOptions options_;
   double start_s_;
@@ -75,6 +84,7 @@ class LockstepGate {
   std::deque<Published> published_;  // in order; as many as somebody has in flight, at least one
   std::map<std::string, std::int64_t> pids_;  // of every process that has said READY, by its name
   std::vector<std::string> notes_;
+  int num_notes_ = 0;
   bool has_newcomer_ = false;
 };
 

@@ -102,6 +102,17 @@ TEST(FrameJoinerTest, ANewSessionSettlesTheOldOneAndStartsOver) {
   EXPECT_EQ(Add(&joiner, 0, 9), Arrival::kLate) << "the channel is in the new session";
 }
 
+TEST(FrameJoinerTest, SessionsAreForgottenAfterAThousandOthers) {
+  FrameJoiner joiner(1, 0);
+  for (std::int64_t session = 1000; session < 4000; ++session) {
+    Add(&joiner, 0, 0, session);
+    Work(&joiner);
+  }
+  EXPECT_EQ(joiner.num_sessions_known(), FrameJoiner::kMaxSessions);
+  EXPECT_EQ(Add(&joiner, 0, 1, 3000), Arrival::kLate) << "one of the last thousand";
+  EXPECT_EQ(Add(&joiner, 0, 1, 2999), Arrival::kNew) << "as if it had never been there";
+}
+
 TEST(FrameJoinerTest, AMessageItsChannelOvertookIsLateHoweverFarTheOthersAre) {
   FrameJoiner behind(2, 0);
   Add(&behind, 0, 0);

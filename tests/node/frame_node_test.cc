@@ -289,6 +289,53 @@ TEST(FrameNodeTest, MemoryStaysBoundedWhenAChannelIsSilent) {
   EXPECT_EQ(node.num_pending(), ScribeNode::kMaxPending);
 }
 
+TEST(FrameNodeTest, RealtimeMemoryStaysBoundedWhenAChannelIsSilent) {
+  ScribeNode node;
+  for (int seq = 0; seq < 1500; ++seq) {
+    Give(&node, Mask(seq));
+    node.SkipToNewest();
+  }
+  EXPECT_EQ(node.num_pending(), ScribeNode::kMaxPending);
+  EXPECT_EQ(node.frames().num_skipped, 500);
+}
+
+// Raw masks of 12 megapixels, as large as a message may be.
+TEST(FrameNodeTest, WaitingFramesAreBoundedInBytesToo) {
+  ScribeNode node;
+  auto mask = MessageAt<person_mask_t>(0, 7);
+  mask.encoding = person_mask_t::ENCODING_RAW_GRAY8;
+  mask.width = 4000;
+  mask.height = 3000;
+  mask.num_bytes = mask.width * mask.height;
+  mask.data.assign(static_cast<std::size_t>(mask.num_bytes), 1);
+  for (mask.seq = 0; mask.seq < 60; ++mask.seq) {
+    Give(&node, {"MASK", Encode(mask)});
+    node.SkipToNewest();
+  }
+  const std::size_t most = ScribeNode::kMaxPendingBytes / static_cast<std::size_t>(mask.num_bytes);
+  EXPECT_EQ(node.num_pending(), most);
+  EXPECT_GT(node.frames().num_skipped, 0);
+}
+
+TEST(FrameNodeTest, AMessageThatIsTooLargeIsNotDecoded) {
+  ScribeNode node;
+  Give(&node, {"POSE", std::vector<std::uint8_t>(kMaxOtherMessageBytes + 1)});
+  EXPECT_EQ(node.channels().at("POSE").num_rejected, 1);
+  EXPECT_EQ(node.channels().at("POSE").last_reject, "1048577 bytes are too many");
+}
+
+// Whoever announces ever new sessions pushes out one that no frame came of, never more.
+TEST(FrameNodeTest, CalibrationsOfSessionsWithoutFramesAreBounded) {
+  ScribeNode node;
+  for (std::int64_t session = 1; session <= 101; ++session) Give(&node, Calibration(1, 0, session));
+  GiveFrame(&node, 0, 1);
+  Work(&node);
+  EXPECT_EQ(node.text, "") << "forgotten";
+  Give(&node, Calibration(1, 0, 1));  // it is repeated once a second
+  Work(&node);
+  EXPECT_NE(node.text.find("session1 "), std::string::npos) << node.text;
+}
+
 TEST(FrameNodeTest, RealtimeSkipsToTheNewestCompleteFrame) {
   ScribeNode node;
   Give(&node, Calibration(1));

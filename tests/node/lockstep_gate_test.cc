@@ -190,5 +190,30 @@ TEST(LockstepGateTest, GivesUpOneThatStopsAtOnce) {
   EXPECT_TRUE(gate.MayPublish(1));
 }
 
+// In realtime pace nobody asks whether the next frame may be published.
+TEST(LockstepGateTest, FramesOfAProcessThatFinishesNoneAreNotRememberedForEver) {
+  LockstepGate gate(TwoProcesses(), 0);
+  gate.OnStatus(Status("a", 1), 0);
+  for (std::int64_t seq = 0; seq < 3000; ++seq) gate.OnPublished(kSession, seq, 0);
+  EXPECT_EQ(gate.num_remembered(), LockstepGate::kMaxInFlight);
+  gate.OnFrameDone(Done("a", 2999), 0);
+  EXPECT_TRUE(gate.IsAllDone(0) || !gate.MayPublish(0)) << "b is still absent";
+}
+
+TEST(LockstepGateTest, WhoIsRestartedForEverIsNotNotedForEver) {
+  LockstepGate gate(TwoProcesses(), 0);
+  int num_notes = 0;
+  std::string last;
+  for (std::int64_t pid = 0; pid < 3000; ++pid) {
+    gate.OnStatus(Status("a", pid), 0);
+    for (const std::string& note : gate.TakeNotes()) {
+      ++num_notes;
+      last = note;
+    }
+  }
+  EXPECT_EQ(num_notes, LockstepGate::kMaxNotes);
+  EXPECT_NE(last.find("nothing more will be said"), std::string::npos) << last;
+}
+
 }  // namespace
 }  // namespace airdos

@@ -130,5 +130,16 @@ TEST_F(LogRecorderTest, BadArgumentsAreNamed) {
   EXPECT_EQ(std::filesystem::file_size(options_.path), 11u) << "it must be left alone";
 }
 
+// STATUS has room for a hundred, and whoever invents names must not take all memory.
+TEST_F(LogRecorderTest, ChannelsBeyondTheBoundAreCountedTogether) {
+  LogRecorder recorder(options_);
+  for (int i = 0; i < 500; ++i) Take({"CHANNEL_" + std::to_string(i), {1}}, &recorder);
+  TakeSeqs(channel::kCameraLeft, {1, 3}, 7, &recorder);
+  EXPECT_EQ(recorder.channels().size(), 92u);
+  EXPECT_EQ(recorder.channels().at(LogRecorder::kOtherChannels).num_received, 410);
+  EXPECT_EQ(recorder.channels().at(channel::kCameraLeft).num_missing, 1);
+  EXPECT_EQ(recorder.num_events(), 502) << "recorded they are all the same";
+}
+
 }  // namespace
 }  // namespace airdos

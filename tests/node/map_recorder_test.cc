@@ -324,6 +324,28 @@ TEST_F(MapRecorderTest, AnotherSessionGoesToItsOwnFolder) {
   EXPECT_TRUE(second.frames.at({0}).ground_truth);
 }
 
+// Each has a folder, and whoever invents sessions must not fill the disk with them.
+TEST_F(MapRecorderTest, SessionsBeyondTheBoundAreNotRecorded) {
+  MapRecorderOptions options = Options("a");
+  options.export_at_end = false;
+  MapRecorderNode node(options);
+  int num_refused = 0;
+  for (std::int64_t session = 1; session <= MapRecorderNode::kMaxSessions + 2; ++session) {
+    const Envelope state = State(0, session);
+    node.Receive(state.channel, state.payload.data(), state.payload.size());
+    try {
+      node.CompleteOldest();
+    } catch (const InputError& error) {
+      ++num_refused;
+      EXPECT_NE(std::string(error.what()).find("is not recorded"), std::string::npos);
+    }
+  }
+  node.Finish();
+  EXPECT_EQ(num_refused, 2);
+  EXPECT_TRUE(fs::exists(folder_ + "/a/session_1000"));
+  EXPECT_FALSE(fs::exists(folder_ + "/a/session_1001"));
+}
+
 TEST_F(MapRecorderTest, AFrameWithoutItsUpdateIsKept) {
   {
     MapRecorderNode node(Options("a"));

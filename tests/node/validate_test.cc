@@ -45,6 +45,12 @@ TEST(ValidateTest, Image) {
   using M = image_t;
   ExpectReject<M>("width 0", [](M* m) { m->width = 0; });
   ExpectReject<M>("height 8193", [](M* m) { m->height = 8193; });
+  // Found by fuzzing: three times their product does not fit into 64 bits.
+  ExpectReject<M>("width 2147483647", [](M* m) {
+    m->width = m->height = std::numeric_limits<int>::max();
+    m->encoding = M::ENCODING_RAW_BGR8;
+  });
+  ExpectReject<M>("number of pixels", [](M* m) { m->width = 4000, m->height = 3001; });
   ExpectReject<M>("encoding 0", [](M* m) { m->encoding = M::ENCODING_INVALID; });
   ExpectReject<M>("encoding 5", [](M* m) { m->encoding = 5; });
   ExpectReject<M>("num_bytes 12 must be 16", [](M* m) { m->width = 4, m->height = 4; });
@@ -62,6 +68,8 @@ TEST(ValidateTest, Calibration) {
   ExpectReject<M>("focal length", [](M* m) { m->fx_px = kNan; });
   ExpectReject<M>("no camera", [](M* m) { m->fy_px = 0; });
   ExpectReject<M>("no camera", [](M* m) { m->cx_px = 700; });
+  ExpectReject<M>("fx_px 6", [](M* m) { m->fx_px = 6; });
+  ExpectReject<M>("baseline_m 1e-05", [](M* m) { m->baseline_m = 1e-5; });
   ExpectReject<M>("baseline_m -0.1", [](M* m) { m->baseline_m = -0.1; });
 }
 
@@ -181,6 +189,20 @@ TEST(ValidateTest, PoseFrameDoneAndStatus) {
   ExpectReject<M>("latency", [](M* m) { m->latency_p99_ms = kNan; });
   ExpectReject<M>("num_channels 101", [](M* m) { m->num_channels = 101; });
   ExpectReject<M>("channel counter -2", [](M* m) { m->channels[1].num_missing = -2; });
+}
+
+// Found by fuzzing: encoding such a text again aborted.
+TEST(ValidateTest, Texts) {
+  ExpectReject<frame_done_t>("letters with a zero in it",
+                             [](frame_done_t* m) { m->process = std::string("a\0b", 3); });
+  ExpectReject<frame_done_t>("process 1001 letters are too many",
+                             [](frame_done_t* m) { m->process.assign(1001, 'a'); });
+  using M = process_status_t;
+  ExpectReject<M>("zero in it", [](M* m) { m->version = std::string(1, '\0'); });
+  ExpectReject<M>("zero in it", [](M* m) { m->last_error = std::string(1, '\0'); });
+  ExpectReject<M>("zero in it", [](M* m) { m->waiting_for = std::string(1, '\0'); });
+  ExpectReject<M>("zero in it", [](M* m) { m->channels[1].channel = std::string(1, '\0'); });
+  ExpectReject<M>("last_reject", [](M* m) { m->channels[1].last_reject.assign(1001, 'a'); });
 }
 
 }  // namespace
