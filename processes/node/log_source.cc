@@ -1,13 +1,17 @@
 #include "processes/node/log_source.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <utility>
 
+#include "common/util/error.h"
 #include "processes/node/channels.h"
 
 namespace airdos {
 namespace {
+
+constexpr std::size_t kSessionsRemembered = 8;  // the last of one may come among those of the next
 
 template <std::size_t kSize>
 bool Contains(const std::array<const char*, kSize>& channels, const std::string& channel) {
@@ -64,22 +68,61 @@ LogSource::LogSource(const std::string& path, std::int64_t first_seq, std::int64
                      LogInputs inputs)
     : reader_(path), first_seq_(first_seq), last_seq_(last_seq), inputs_(inputs) {}
 
-std::optional<LogEvent> LogSource::NextInput(Header* header) {
+std::optional<LogSource::Input> LogSource::ReadInput() {
   while (std::optional<LogEvent> event = reader_.Next()) {
     const bool is_feature =
         event->channel == channel::kStaticFeatures || event->channel == channel::kHumanObservations;
     const bool is_input =
         IsInputChannel(event->channel) || (is_feature && inputs_ == LogInputs::kFeatures);
     if (!is_input) continue;
-    const std::optional<Header> peeked = PeekHeader(event->payload.data(), event->payload.size());
-    if (!peeked) {
-      ++num_without_header_;
+    const std::optional<Header> header = PeekHeader(event->payload.data(), event->payload.size());
+    if (header) return Input{*header, std::move(*event)};
+    ++num_without_header_;
+  }
+  return std::nullopt;
+}
+
+bool LogSource::IsCredible(const Header& header) const {
+  if (header.seq < 0) return false;  // receivers would not take it
+  for (const Header& newest : newest_) {
+    if (newest.session == header.session && header.seq - 1 <= newest.seq) return true;
+  }
+  if (ahead_.empty()) return true;
+  return std::any_of(ahead_.begin(), ahead_.end(), [&header](const Input& later) {
+    // Neither negative, so the difference fits.
+    return later.header.session == header.session && later.header.seq >= header.seq &&
+           later.header.seq - header.seq <= FrameJoiner::kMaxAhead;
+  });
+}
+
+void LogSource::Remember(const Header& header) {
+  for (Header& newest : newest_) {
+    if (newest.session != header.session) continue;
+    newest.seq = std::max(newest.seq, header.seq);
+    return;
+  }
+  newest_.push_back(header);
+  if (newest_.size() > kSessionsRemembered) newest_.pop_front();
+}
+
+std::optional<LogSource::Input> LogSource::NextInput() {
+  while (true) {
+    while (ahead_.size() < kLookahead + 1) {
+      std::optional<Input> input = ReadInput();
+      if (!input) break;
+      ahead_.push_back(std::move(*input));
+    }
+    if (ahead_.empty()) break;
+    Input input = std::move(ahead_.front());
+    ahead_.pop_front();
+    if (!IsCredible(input.header)) {
+      ++num_incredible_;
       continue;
     }
-    const bool is_before = peeked->seq < first_seq_ && event->channel != channel::kCalibration;
-    if (is_before || peeked->seq > last_seq_) continue;
-    *header = *peeked;
-    return event;
+    Remember(input.header);
+    const bool is_before =
+        input.header.seq < first_seq_ && input.event.channel != channel::kCalibration;
+    if (!is_before && input.header.seq <= last_seq_) return input;
   }
   NoteDamage();
   return std::nullopt;
@@ -88,11 +131,17 @@ std::optional<LogEvent> LogSource::NextInput(Header* header) {
 std::vector<Envelope> LogSource::NextFrame() {
   std::vector<Envelope> frame;
   if (is_at_end_) return frame;
-  if (!next_) next_ = NextInput(&next_header_);
-  newest_ = next_header_;
-  while (next_ && !IsNewer(next_header_, *newest_)) {
-    frame.push_back({std::move(next_->channel), std::move(next_->payload)});
-    next_ = NextInput(&next_header_);
+  const bool is_first = !next_;
+  if (is_first) next_ = NextInput();
+  if (is_first && !next_) {
+    throw InputError(reader_.path() + ": holds no message for the processes: none of " +
+                     (inputs_ == LogInputs::kFeatures ? "STATIC_FEATURES" : "CAMERA_LEFT") +
+                     " and the like in the range of image numbers");
+  }
+  frame_ = next_->header;
+  while (next_ && !IsNewer(next_->header, frame_) && frame.size() < kMaxFrameMessages) {
+    frame.push_back({std::move(next_->event.channel), std::move(next_->event.payload)});
+    next_ = NextInput();
   }
   is_at_end_ = !next_;
   return frame;
@@ -111,6 +160,10 @@ void LogSource::NoteDamage() {
   if (num_without_header_ > 0) {
     notes_.push_back(reader_.path() + ": " + std::to_string(num_without_header_) +
                      " messages too short to have a header left out");
+  }
+  if (num_incredible_ > 0) {
+    notes_.push_back(reader_.path() + ": " + std::to_string(num_incredible_) +
+                     " messages left out: session or image number fit to nothing around them");
   }
 }
 

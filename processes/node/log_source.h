@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <optional>
 #include <string>
@@ -46,22 +47,42 @@ enum class LogInputs {
 };
 
 /// The input channels of a log, in the log's order. A frame ends before the first message of a
-/// newer one; messages that come late travel with the frame in which they came. Messages without a
-/// header are dropped and counted in damage().
+/// newer one; messages that come late travel with the frame in which they came.
+///
+/// Messages without a header are left out. So are those whose header cannot be right: one flipped
+/// bit of a session or an image number, taken for true, would make all that follows late. A message
+/// of a new session, or of an image further ahead than the next one of its session, counts only
+/// if one of the next kLookahead messages agrees (the same session, not an older image), or if none
+/// follows. TakeNotes() tells how many were left out.
 class LogSource : public FrameSource {
  public:
+  static constexpr std::size_t kLookahead = 16;
+  /// A frame is handed out in pieces of at most so many messages.
+  static constexpr std::size_t kMaxFrameMessages = 100;
+
   /// Frames with first_seq <= seq <= last_seq; calibrations from before are kept.
   explicit LogSource(const std::string& path,
                      std::int64_t first_seq = std::numeric_limits<std::int64_t>::min(),
                      std::int64_t last_seq = std::numeric_limits<std::int64_t>::max(),
                      LogInputs inputs = LogInputs::kImages);
 
+  /// Throws InputError where the log holds no message that it could give.
   std::vector<Envelope> NextFrame() override;
   double fraction_done() const override;
   std::vector<std::string> TakeNotes() override { return std::exchange(notes_, {}); }
 
  private:
-  std::optional<LogEvent> NextInput(Header* header);
+  struct Input {
+    Header header;
+    LogEvent event;
+  };
+
+  /// The next message that is input, whatever its header says.
+  std::optional<Input> ReadInput();
+  /// The next one whose header may be right.
+  std::optional<Input> NextInput();
+  bool IsCredible(const Header& header) const;
+  void Remember(const Header& header);
   void NoteDamage();
 
   EventLogReader reader_;
@@ -69,10 +90,12 @@ class LogSource : public FrameSource {
   std::int64_t last_seq_;
   LogInputs inputs_;
   std::int64_t num_without_header_ = 0;
+  std::int64_t num_incredible_ = 0;
+  std::deque<Input> ahead_;  // read, not yet looked at
   std::vector<std::string> notes_;
-  std::optional<Header> newest_;
-  std::optional<LogEvent> next_;  // first message of the frame to come
-  Header next_header_;
+  std::deque<Header> newest_;  // of what was credible, one a session
+  Header frame_;               // of the frame that is handed out
+  std::optional<Input> next_;  // first message of the frame to come
   bool is_at_end_ = false;
 };
 

@@ -19,6 +19,8 @@ namespace airdos {
 namespace {
 
 constexpr int kPollTimeout_ms = 50;
+constexpr int kMaxJumpsSaid = 10;
+constexpr int kMaxDrained = 1000;  // messages that are taken in at once
 /// Messages go out no faster than this: a burst of several frames overflows the receivers' socket
 /// buffers (200 kB on a stock kernel) before their threads run.
 constexpr double kMaxBytesPerSecond = 30e6;
@@ -116,18 +118,14 @@ void PlayerLoop::Run() {
 }
 
 void PlayerLoop::PlayOnce(FrameSource* source) {
-  std::optional<std::pair<double, std::int64_t>> start;  // s on our clock, us of capture time
-  while (true) {
+  pace_.reset();
+  for (bool is_first = true;; is_first = false) {
     const std::vector<Envelope> messages = source->NextFrame();
     SayNotes(source);
     if (messages.empty()) return;
     const Header header = HeaderOfFrame(messages);
-    if (!start || options_.pace == PlayerPace::kLockstep) WaitUntilMayPublish();
-    if (!start) start = {SteadyClock_s(), header.utime};
-    if (options_.pace == PlayerPace::kRealtime) {
-      WaitForTime(start->first +
-                  1e-6 * static_cast<double>(header.utime - start->second) / options_.rate);
-    }
+    if (is_first || options_.pace == PlayerPace::kLockstep) WaitUntilMayPublish();
+    if (options_.pace == PlayerPace::kRealtime) WaitForTime(header);
     if (StopRequested()) return;
     PublishFrame(messages, header);
   }
@@ -139,10 +137,25 @@ void PlayerLoop::WaitUntilMayPublish() {
   SayNotes(nullptr);
 }
 
-void PlayerLoop::WaitForTime(double due_s) {
-  for (double left_s = due_s - SteadyClock_s(); left_s > 0 && !StopRequested();
-       left_s = due_s - SteadyClock_s()) {
-    Listen(std::min(kPollTimeout_ms, static_cast<int>(1e3 * left_s) + 1));
+void PlayerLoop::WaitForTime(const Header& header) {
+  if (!pace_) pace_ = {SteadyClock_s(), header.utime};
+  // Floating point: the difference of two damaged times may not fit into an integer.
+  double gap_s = 1e-6 * (static_cast<double>(header.utime) - static_cast<double>(pace_->second));
+  if (gap_s < 0 || gap_s > kMaxGap_s) {
+    if (++num_jumps_ <= kMaxJumpsSaid) {
+      std::ostringstream line;
+      line.precision(3);
+      line << "capture time jumps by " << gap_s << " s at image " << header.seq
+           << ": going on without a wait";
+      if (num_jumps_ == kMaxJumpsSaid) line << " (further jumps are not said)";
+      Say(line.str());
+    }
+    gap_s = 0;
+  }
+  pace_ = {pace_->first + gap_s / options_.rate, header.utime};
+  for (double left_s = pace_->first - SteadyClock_s(); left_s > 0 && !StopRequested();
+       left_s = pace_->first - SteadyClock_s()) {
+    Listen(std::min(kPollTimeout_ms, static_cast<int>(1e3 * std::min(left_s, 1.0)) + 1));
   }
 }
 
@@ -153,7 +166,8 @@ void PlayerLoop::WaitUntilAllDone() {
 
 void PlayerLoop::Listen(int timeout_ms) {
   if (transport_->Poll(timeout_ms)) {
-    while (!StopRequested() && transport_->Poll(0)) {
+    // Bounded: a flood of STATUS must not keep the player from playing.
+    for (int i = 0; i < kMaxDrained && !StopRequested() && transport_->Poll(0); ++i) {
     }
   }
   SayNotes(nullptr);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <ostream>
 #include <string>
+#include <utility>
 
 #include "processes/node/lcm_transport.h"
 #include "processes/node/log_source.h"
@@ -24,8 +25,13 @@ std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std:
 void WriteLog(const std::string& path, FrameSource* source, std::ostream* log);
 
 /// Publishes a source over LCM, as fast as the other processes are done or as cameras would.
+///
+/// In realtime pace capture times that go back, or ahead by more than kMaxGap_s (a pause in the
+/// recording, or damage), are said and not waited for: the image is published with the one before.
 class PlayerLoop {
  public:
+  static constexpr double kMaxGap_s = 10;  ///< of capture time
+
   /// Opens the source for one more time; `loop` counts from 0.
   using OpenSource = std::function<std::unique_ptr<FrameSource>(int loop)>;
 
@@ -39,7 +45,7 @@ class PlayerLoop {
  private:
   void PlayOnce(FrameSource* source);
   void WaitUntilMayPublish();
-  void WaitForTime(double due_s);
+  void WaitForTime(const Header& header);
   void WaitUntilAllDone();
   void PublishFrame(const std::vector<Envelope>& messages, const Header& header);
   void Publish(const Envelope& message);
@@ -53,6 +59,9 @@ class PlayerLoop {
   std::ostream* log_;
   LockstepGate gate_;
   std::optional<Envelope> calibration_;  // the last one, for a process that comes later
+  // Realtime pace: when the frame before was due on our clock, and its capture time.
+  std::optional<std::pair<double, std::int64_t>> pace_;
+  int num_jumps_ = 0;
   std::int64_t num_published_ = 0;
   std::int64_t num_not_published_ = 0;  // messages that the network did not take
 };

@@ -43,7 +43,7 @@ await() {
 
 wrong_options_exit_2_in_one_line() {
   local script
-  for script in setup demo test spy run_live replay_log long_run; do
+  for script in setup demo test fuzz spy run_live replay_log long_run; do
     expect 0 "Usage: launch_scripts/$script.sh" "$scripts/$script.sh" --help
     expect 2 "--no-such-option" "$scripts/$script.sh" --no-such-option
   done
@@ -58,6 +58,7 @@ wrong_options_exit_2_in_one_line() {
   expect 2 "no file '/nonexistent.lcm'" "$scripts/replay_log.sh" /nonexistent.lcm
   expect 2 "no run of run_live.sh in '/nonexistent'" "$scripts/replay_log.sh" "$0" --run /nonexistent
   expect 2 "no run of run_live.sh in '/nonexistent'" "$scripts/spy.sh" --namespace /nonexistent
+  expect 2 "--seconds: not a whole number above 0: '0'" "$scripts/fuzz.sh" --seconds 0
   expect 1 "airdos-frontend is missing: build first" env AIRDOS_BIN="$work/none" "$scripts/run_live.sh"
 }
 
