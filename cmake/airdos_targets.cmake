@@ -10,6 +10,17 @@ if(AIRDOS_SANITIZE)
   target_link_options(airdos_options INTERFACE -fsanitize=address,undefined)
 endif()
 
+if(AIRDOS_BUILD_FUZZERS)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "AIRDOS_BUILD_FUZZERS needs clang, which brings libFuzzer: install clang and configure with "
+                        "-DCMAKE_CXX_COMPILER=clang++ in a build folder of its own, or run launch_scripts/fuzz.sh")
+  endif()
+  set(airdos_fuzzer_flags -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  # g++ is the judge of warnings; clang knows others.
+  target_compile_options(airdos_options INTERFACE ${airdos_fuzzer_flags} -fsanitize=fuzzer-no-link -Wno-everything)
+  target_link_options(airdos_options INTERFACE ${airdos_fuzzer_flags})
+endif()
+
 # airdos_library(NAME SOURCES a.cc b.cc DEPS other libraries)
 function(airdos_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})

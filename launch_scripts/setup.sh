@@ -20,17 +20,24 @@ AIRDOS_PACKAGES=(
   iproute2 xvfb xauth jq
 )
 
+# What test.sh takes besides: the fuzz targets (fuzz.sh) are built with clang's libFuzzer.
+# shellcheck disable=SC2034
+AIRDOS_TEST_PACKAGES=(clang libclang-rt-14-dev)
+
 is_installed() { [[ $(dpkg-query -W -f='${db:Status-Status}' "$1" 2> /dev/null) == installed ]]; }
 
+# install_packages [FURTHER PACKAGES…]
+# shellcheck disable=SC2120
 install_packages() {
-  command -v dpkg-query > /dev/null || die "this set-up knows Debian and apt-get only; install by hand: ${AIRDOS_PACKAGES[*]}"
+  local -a packages=("${AIRDOS_PACKAGES[@]}" "$@")
+  command -v dpkg-query > /dev/null || die "this set-up knows Debian and apt-get only; install by hand: ${packages[*]}"
   local package
   local -a missing=() as_root=()
-  for package in "${AIRDOS_PACKAGES[@]}"; do
+  for package in "${packages[@]}"; do
     is_installed "$package" || missing+=("$package")
   done
   if ((${#missing[@]} == 0)); then
-    say "all ${#AIRDOS_PACKAGES[@]} packages are installed"
+    say "all ${#packages[@]} packages are installed"
     return
   fi
   if ((EUID != 0)); then

@@ -1,9 +1,10 @@
 #!/bin/bash
 # Installs what is missing, builds, and runs all tests: the unit, numeric and node tests under the address and
-# undefined-behaviour sanitizers, then everything in the normal build.
+# undefined-behaviour sanitizers, the fuzz targets (fuzz.sh) for 10 s each, then everything in the normal build.
 #
-# Usage: launch_scripts/test.sh [--no-sanitizers]
-#   --no-sanitizers  only the normal build
+# Usage: launch_scripts/test.sh [--no-sanitizers] [--no-fuzz]
+#   --no-sanitizers  only the normal build, and no fuzz targets
+#   --no-fuzz        no fuzz targets
 #   --help           this text
 #
 # Exit 0 if nothing failed. Tests that were skipped are listed with their reasons.
@@ -13,10 +14,11 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 readonly SANITIZED_TIERS='unit numeric node'
 
-sanitizers=yes
+sanitizers=yes fuzz=yes
 while (($# > 0)); do
   case $1 in
-    --no-sanitizers) sanitizers=no ;;
+    --no-sanitizers) sanitizers=no fuzz=no ;;
+    --no-fuzz) fuzz=no ;;
     --help | -h)
       print_help
       exit 0
@@ -49,7 +51,15 @@ run_tests() {
   [[ $failed == no ]]
 }
 
-install_packages
+# run_fuzzers: false if a target failed; without clang it says so and is true.
+run_fuzzers() {
+  local code=0
+  "$AIRDOS_ROOT/launch_scripts/fuzz.sh" --seconds 10 || code=$?
+  if ((code == 77)); then say "SKIPPED: the fuzz targets (no clang)"; fi
+  ((code == 0 || code == 77))
+}
+
+if [[ $fuzz == yes ]]; then install_packages "${AIRDOS_TEST_PACKAGES[@]}"; else install_packages; fi
 failures=0
 
 if [[ $sanitizers == yes ]]; then
@@ -60,7 +70,9 @@ if [[ $sanitizers == yes ]]; then
   run_tests "$AIRDOS_ROOT/build-sanitize" -L "^(${SANITIZED_TIERS// /|})\$" || failures=1
 fi
 
+if [[ $fuzz == yes ]]; then run_fuzzers || failures=1; fi
+
 configure_and_build "$AIRDOS_ROOT/build" all -DCMAKE_BUILD_TYPE=Release
-if ((failures > 0)); then say "tests FAILED under the sanitizers (see above); now the others"; fi
+if ((failures > 0)); then say "tests or fuzz targets FAILED under the sanitizers (see above); now the others"; fi
 run_tests "$AIRDOS_ROOT/build" || failures=1
 exit "$failures"

@@ -1,0 +1,105 @@
+#!/bin/bash
+# Looks for inputs that crash, throw, hang or take more than 64 MB at once: builds the fuzz targets (tests/fuzz) with clang's
+# libFuzzer under the address and undefined-behaviour sanitizers, and runs each for some seconds.
+#
+# Usage: launch_scripts/fuzz.sh [--seconds N] [--build-only] [TARGET…]
+#   --seconds N   for each target (default 10; an hour for all 18: 200)
+#   --build-only  do not run
+#   --list        the names of the targets (after a build)
+#   --help        this text
+#
+# Seeds are generated, what libFuzzer finds worth keeping is kept in build-fuzz/corpus/TARGET for the next run. An input that
+# fails is kept in build-fuzz/failures; run build-fuzz/bin/airdos_fuzz_TARGET FILE to see it again. Exit 1 if there is any,
+# 77 if clang is not installed.
+set -euo pipefail
+# shellcheck source=launch_scripts/setup.sh
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+
+readonly FOLDER=${AIRDOS_FUZZ_BUILD:-$AIRDOS_ROOT/build-fuzz}
+readonly EXIT_SKIPPED=77
+
+seconds=10 build_only=no list=no
+targets=()
+while (($# > 0)); do
+  case $1 in
+    --seconds)
+      need_value "$@"
+      [[ $2 =~ ^[1-9][0-9]*$ ]] || die_usage "--seconds: not a whole number above 0: '$2'"
+      seconds=$2
+      shift
+      ;;
+    --build-only) build_only=yes ;;
+    --list) list=yes ;;
+    --help | -h)
+      print_help
+      exit 0
+      ;;
+    -*) die_usage "unknown option '$1' (see --help)" ;;
+    *) targets+=("$1") ;;
+  esac
+  shift
+done
+
+# The newest clang++ that brings libFuzzer.
+find_clang() {
+  local compiler runtime
+  for compiler in clang++ clang++-19 clang++-16 clang++-15 clang++-14; do
+    command -v "$compiler" > /dev/null || continue
+    runtime=$("$compiler" --print-file-name="libclang_rt.fuzzer-$(uname -m).a")  # its bare name if there is none
+    if [[ -e $runtime ]]; then
+      echo "$compiler"
+      return
+    fi
+  done
+}
+
+build_fuzzers() {
+  local compiler
+  compiler=$(find_clang)
+  if [[ -z $compiler ]]; then
+    say "no clang with libFuzzer here (apt-get install clang libclang-rt-14-dev): the fuzz targets are not run"
+    exit "$EXIT_SKIPPED"
+  fi
+  configure_and_build "$FOLDER" airdos_fuzz -DCMAKE_CXX_COMPILER="$compiler" -DAIRDOS_BUILD_FUZZERS=ON \
+    -DAIRDOS_BUILD_TESTS=OFF -DAIRDOS_BUILD_JAVA=OFF -DCMAKE_BUILD_TYPE=Fuzz "-DCMAKE_CXX_FLAGS_FUZZ=-O1 -g1"
+}
+
+# link_to NAME: the program under the name that it goes by.
+link_to() { ln -sf airdos_fuzz "$FOLDER/bin/airdos_fuzz_$1"; }
+
+# run_target NAME MAX_BYTES: false if it failed.
+run_target() {
+  local name=$1 max_bytes=$2 corpus=$FOLDER/corpus/$1 log=$FOLDER/$1.log
+  mkdir -p "$corpus" "$FOLDER/failures"
+  link_to "$name"
+  # 64 MB for one allocation; a whole process of sanitized code needs more than one of ours.
+  if "$FOLDER/bin/airdos_fuzz_$name" -max_total_time="$seconds" -max_len="$max_bytes" -timeout=10 -malloc_limit_mb=64 \
+    -rss_limit_mb=1024 -print_final_stats=1 -artifact_prefix="$FOLDER/failures/$name-" "$corpus" "$FOLDER/seeds/$name" \
+    > "$log" 2>&1 < /dev/null; then
+    printf '  %-16s %9s runs, coverage %s\n' "$name" "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")" \
+      "$(sed -n 's/.* cov: \([0-9]*\) .*/\1/p' "$log" | tail -n 1)"
+  else
+    grep -m 1 -E 'ERROR|runtime error|fuzz check|terminate' "$log" || tail -n 3 "$log"
+    say "$name FAILED (log: $log)" >&2
+    return 1
+  fi
+}
+
+[[ $list == yes && -e $FOLDER/bin/airdos_fuzz ]] || build_fuzzers
+for name in list seeds; do link_to "$name"; done
+if [[ $list == yes ]]; then
+  "$FOLDER/bin/airdos_fuzz_list"
+  exit 0
+fi
+if [[ $build_only == yes ]]; then exit 0; fi
+
+"$FOLDER/bin/airdos_fuzz_seeds" "$FOLDER/seeds"
+failed=0 num_run=0
+while read -r name max_bytes; do
+  if ((${#targets[@]} > 0)) && [[ " ${targets[*]} " != *" $name "* ]]; then continue; fi
+  num_run=$((num_run + 1))
+  run_target "$name" "$max_bytes" || failed=$((failed + 1))
+done < <("$FOLDER/bin/airdos_fuzz_list")
+((num_run > 0)) || die_usage "no such target: ${targets[*]} (see --list)"
+say "$num_run targets for $seconds s each, $failed failed"
+((failed == 0))

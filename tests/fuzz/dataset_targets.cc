@@ -1,0 +1,177 @@
+#include <opencv2/imgcodecs.hpp>
+
+#include "common/dataset/oxts.h"
+#include "common/dataset/sequence_files.h"
+#include "common/dataset/stereo_sequence.h"
+#include "common/util/error.h"
+#include "processes/stereo_player/stereo_player.h"
+#include "tests/fuzz/fuzz_input.h"
+
+namespace airdos {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Layout {
+  std::string opened;  // folder inside the data set that is opened
+  std::vector<std::pair<std::string, std::string>> files;  // good contents, replaced by the input
+};
+
+std::string SmallPng() {
+  static const std::string file = [] {
+    FuzzBytes bytes;
+    cv::imencode(".png", cv::Mat(12, 16, CV_8UC1, cv::Scalar(77)), bytes);
+    return std::string(bytes.begin(), bytes.end());
+  }();
+  return file;
+}
+
+std::string Person() {
+  std::string line;
+  for (int joint = 0; joint < 18; ++joint) line += "3.5 4.5 0.9 ";
+  return line + "\n";
+}
+
+constexpr char kTwoPoses[] = "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 2\n";
+constexpr char kTwoTimes[] = "0.0\n0.1\n";
+
+Layout Shibuya() {
+  return {"",
+          {{"image_0/000000.png", SmallPng()},
+           {"image_1/000000.png", SmallPng()},
+           {"image_0/000001.png", SmallPng()},
+           {"image_1/000001.png", SmallPng()},
+           {"times.txt", kTwoTimes},
+           {"calib.json", R"({"fx":20,"fy":20,"cx":8,"cy":6,"baseline_m":0.2,"width":16})"},
+           {"alphapose_0/000000.txt", Person()},
+           {"alphapose_1/000000.txt", Person() + Person()},
+           {"rcnnseg_image_0/000000.png", SmallPng()},
+           {"gt_pose.txt", "0 1 2 3 0 0 0 1\n0.1 1 2 3 0 0 1 0\n"}}};
+}
+
+Layout KittiOdometry() {
+  return {"",
+          {{"image_0/000000.png", SmallPng()},
+           {"image_1/000000.png", SmallPng()},
+           {"image_0/000001.png", SmallPng()},
+           {"image_1/000001.png", SmallPng()},
+           {"times.txt", kTwoTimes},
+           {"calib.txt", "P0: 20 0 8 0 0 20 6 0 0 0 1 0\nP1: 20 0 8 -4 0 20 6 0 0 0 1 0\n"},
+           {"poses.txt", kTwoPoses}}};
+}
+
+Layout KittiTracking() {
+  std::string oxts = "49.0 8.4 112.8 0.03 0.01 -0.6";
+  for (int i = 0; i < 24; ++i) oxts += " 0";
+  return {"image_02/0000",
+          {{"image_02/0000/000000.png", SmallPng()},
+           {"image_03/0000/000000.png", SmallPng()},
+           {"calib/0000.txt",
+            "P2: 20 0 8 0 0 20 6 0 0 0 1 0\nP3: 20 0 8 -4 0 20 6 0 0 0 1 0\n"
+            "R_rect 1 0 0 0 1 0 0 0 1\nTr_velo_cam 1 0 0 0 0 1 0 0 0 0 1 0\n"
+            "Tr_imu_velo 1 0 0 0 0 1 0 0 0 0 1 0\n"},
+           {"oxts/0000.txt", oxts + "\n"},
+           {"alphapose_0/0000/000000.txt", Person()}}};
+}
+
+void Play(const std::string& folder) {
+  try {
+    const std::unique_ptr<StereoSequence> sequence = OpenStereoSequence(folder);
+    sequence->notes();
+    StereoPlayer player(sequence.get(), 1, ImagePackerOptions());
+    for (std::size_t i = 0; i < sequence->num_frames(); ++i) {
+      try {
+        player.Load(i);
+      } catch (const InputError&) {  // of this frame's files
+      }
+    }
+  } catch (const InputError&) {
+  }
+}
+
+/// The input replaces files of a good data set: number, length, content.
+void RunLayout(const Layout& layout, FuzzInput input) {
+  const std::string folder = FuzzFolder::Path() + "/data";
+  std::vector<std::pair<std::string, std::string>> files = layout.files;
+  while (!input.empty()) {
+    auto& [name, content] = files[input.U8() % files.size()];
+    const FuzzBytes bytes = input.Block();
+    content.assign(bytes.begin(), bytes.end());
+  }
+  for (const auto& [name, content] : files) {
+    fs::create_directories(fs::path(folder + "/" + name).parent_path());
+    FuzzFolder::Write("data/" + name, content.data(), content.size());
+  }
+  Play(folder + "/" + layout.opened);
+  fs::remove_all(folder);
+}
+
+/// Each file as it is, one after the other.
+std::vector<FuzzBytes> SeedsOf(const Layout& layout) {
+  std::vector<FuzzBytes> seeds;
+  for (std::size_t i = 0; i < layout.files.size(); ++i) {
+    FuzzOutput seed;
+    seed.U8(static_cast<int>(i));
+    seed.Block(layout.files[i].second);
+    seeds.push_back(seed.Take());
+  }
+  return seeds;
+}
+
+void RunShibuya(const std::uint8_t* data, std::size_t size) {
+  RunLayout(Shibuya(), FuzzInput(data, size));
+}
+std::vector<FuzzBytes> ShibuyaSeeds() { return SeedsOf(Shibuya()); }
+
+void RunKittiOdometry(const std::uint8_t* data, std::size_t size) {
+  RunLayout(KittiOdometry(), FuzzInput(data, size));
+}
+std::vector<FuzzBytes> KittiOdometrySeeds() { return SeedsOf(KittiOdometry()); }
+
+void RunKittiTracking(const std::uint8_t* data, std::size_t size) {
+  RunLayout(KittiTracking(), FuzzInput(data, size));
+}
+std::vector<FuzzBytes> KittiTrackingSeeds() { return SeedsOf(KittiTracking()); }
+
+/// The text files of all layouts, without the folder around them, which takes time to make.
+void RunTextFiles(const std::uint8_t* data, std::size_t size) {
+  const std::string path = FuzzFolder::Write("text.txt", data, size);
+  const auto attempt = [&path](const auto& read) {
+    try {
+      read(path);
+    } catch (const InputError&) {
+    }
+  };
+  attempt(ReadTimes);
+  attempt(ReadKeypoints);
+  attempt(ReadKittiPoses);
+  attempt(ReadOxts);
+}
+
+std::vector<FuzzBytes> TextSeeds() {
+  std::vector<FuzzBytes> seeds;
+  const std::string oxts = KittiTracking().files[3].second;
+  for (const std::string& text : {std::string(kTwoTimes), Person(), std::string(kTwoPoses), oxts,
+                                  std::string("1.5e-3\n+2.25E1\n# comment\n")}) {
+    seeds.emplace_back(text.begin(), text.end());
+  }
+  return seeds;
+}
+
+}  // namespace
+
+std::vector<FuzzTarget> DatasetTargets() {
+  return {{"shibuya", RunShibuya, ShibuyaSeeds, 4096},
+          {"kitti_odometry", RunKittiOdometry, KittiOdometrySeeds, 4096},
+          {"kitti_tracking", RunKittiTracking, KittiTrackingSeeds, 4096},
+          {"text_files", RunTextFiles, TextSeeds, 4096}};
+}
+
+std::vector<FuzzTarget> FuzzTargets() {
+  std::vector<FuzzTarget> all;
+  for (const auto& group : {NodeTargets(), MessageTargets(), FileTargets(), DatasetTargets()})
+    all.insert(all.end(), group.begin(), group.end());
+  return all;
+}
+
+}  // namespace airdos
