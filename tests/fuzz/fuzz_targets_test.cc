@@ -8,7 +8,7 @@
 namespace airdos {
 namespace {
 
-constexpr int kCopiesOfASeed = 40;
+constexpr int kCopiesOfASeed = 200;
 
 FuzzBytes Changed(FuzzBytes bytes, std::mt19937_64* random) {
   const auto below = [random](std::size_t end) { return (*random)() % end; };

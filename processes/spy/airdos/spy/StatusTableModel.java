@@ -24,10 +24,14 @@ final class StatusTableModel extends AbstractTableModel {
     long heardAtMs;
   }
 
+  /** Whoever invents names of processes must not fill the memory. */
+  static final int MAX_PROCESSES = 100;
+
   private final Map<String, Row> rows = new TreeMap<>();
   private long nowMs;
 
   void add(process_status_t status, long atMs) {
+    if (rows.size() >= MAX_PROCESSES && !rows.containsKey(status.process)) return;
     Row row = rows.computeIfAbsent(status.process, name -> new Row());
     row.status = status;
     row.heardAtMs = atMs;
