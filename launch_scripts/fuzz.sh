@@ -93,7 +93,7 @@ if [[ $list == yes ]]; then
 fi
 if [[ $build_only == yes ]]; then exit 0; fi
 
-"$FOLDER/bin/airdos_fuzz_seeds" "$FOLDER/seeds"
+"$FOLDER/bin/airdos_fuzz_seeds" "$FOLDER/seeds" "$AIRDOS_ROOT/logs/road_crossing06.lcm"
 failed=0 num_run=0
 while read -r name max_bytes; do
   if ((${#targets[@]} > 0)) && [[ " ${targets[*]} " != *" $name "* ]]; then continue; fi

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include "tests/fuzz/fuzz_targets.h"
 
@@ -27,11 +28,16 @@ void List() {
     std::printf("%s %d\n", target.name.c_str(), target.max_bytes);
 }
 
-void WriteSeeds(const std::string& folder) {
+void WriteSeeds(const std::string& folder, const std::string& log) {
   for (const airdos::FuzzTarget& target : airdos::FuzzTargets()) {
     std::filesystem::create_directories(folder + "/" + target.name);
     int number = 0;
-    for (const airdos::FuzzBytes& seed : target.seeds()) {
+    std::vector<airdos::FuzzBytes> seeds = target.seeds();
+    if (target.name == "messages" && !log.empty()) {
+      for (airdos::FuzzBytes& seed : airdos::MessageSeedsOfLog(log))
+        seeds.push_back(std::move(seed));
+    }
+    for (const airdos::FuzzBytes& seed : seeds) {
       std::ofstream file(folder + "/" + target.name + "/seed_" + std::to_string(number++),
                          std::ios::binary);
       file.write(reinterpret_cast<const char*>(seed.data()),
@@ -48,8 +54,8 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
     List();
     std::exit(0);
   }
-  if (name == "seeds" && *argc == 2) {
-    WriteSeeds((*argv)[1]);
+  if (name == "seeds" && *argc >= 2) {
+    WriteSeeds((*argv)[1], *argc > 2 ? (*argv)[2] : "");
     std::exit(0);
   }
   for (const airdos::FuzzTarget& target : airdos::FuzzTargets()) {

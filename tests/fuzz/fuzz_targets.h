@@ -29,6 +29,10 @@ std::vector<FuzzTarget> MessageTargets();  ///< message types, images, what list
 std::vector<FuzzTarget> FileTargets();     ///< logs, maps, configurations
 std::vector<FuzzTarget> DatasetTargets();  ///< data sets and their files
 
+/// Further seeds of the target "messages": the first messages on each channel of a log that are
+/// small enough.
+std::vector<FuzzBytes> MessageSeedsOfLog(const std::string& path);
+
 }  // namespace airdos
 
 #endif  // AIRDOS_TESTS_FUZZ_FUZZ_TARGETS_H_

@@ -1,8 +1,11 @@
+#include <map>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
 #include "processes/node/channels.h"
+#include "processes/node/event_log.h"
 #include "processes/node/image_codec.h"
 #include "processes/node/keypoint_messages.h"
 #include "processes/node/log_recorder.h"
@@ -13,6 +16,8 @@
 
 namespace airdos {
 namespace {
+
+constexpr int kMaxMessageSeedBytes = 4096;
 
 /// The first byte chooses the type; the fingerprint is put in front.
 template <class Message>
@@ -44,10 +49,23 @@ struct Types {
   }
   template <class Message>
   static void Add(const Message& message, std::vector<FuzzBytes>* seeds) {
-    FuzzBytes seed = Encode(message);
-    seed.erase(seed.begin(), seed.begin() + 7);  // the type's number takes the place of the last
-    seed[0] = static_cast<std::uint8_t>(seeds->size());
-    seeds->push_back(seed);
+    seeds->push_back(Numbered(static_cast<int>(seeds->size()), Encode(message)));
+  }
+  /// The type's number takes the place of the fingerprint.
+  static FuzzBytes Numbered(int number, FuzzBytes message) {
+    message.erase(message.begin(), message.begin() + 7);
+    message[0] = static_cast<std::uint8_t>(number);
+    return message;
+  }
+  static std::optional<int> NumberOf(const FuzzBytes& message) {
+    int index = -1;
+    std::optional<int> number;
+    const auto match = [&](const FuzzBytes& sample) {
+      ++index;
+      if (std::equal(sample.begin(), sample.begin() + 8, message.begin())) number = index;
+    };
+    (match(Encode(Messages{})), ...);
+    return number;
   }
 };
 
@@ -203,8 +221,25 @@ std::vector<FuzzBytes> LogRecorderSeeds() {
 
 }  // namespace
 
+std::vector<FuzzBytes> MessageSeedsOfLog(const std::string& path) {
+  constexpr int kOfAChannel = 3;
+  std::vector<FuzzBytes> seeds;
+  std::map<std::string, int> num_taken;
+  EventLogReader reader(path);
+  while (const std::optional<LogEvent> event = reader.Next()) {
+    const std::size_t size = event->payload.size();
+    if (size < 32 || size > kMaxMessageSeedBytes || num_taken[event->channel] == kOfAChannel)
+      continue;
+    const std::optional<int> number = AllTypes::NumberOf(event->payload);
+    if (!number) continue;
+    ++num_taken[event->channel];
+    seeds.push_back(AllTypes::Numbered(*number, event->payload));
+  }
+  return seeds;
+}
+
 std::vector<FuzzTarget> MessageTargets() {
-  return {{"messages", RunMessages, AllTypes::Seeds, 4096},
+  return {{"messages", RunMessages, AllTypes::Seeds, kMaxMessageSeedBytes},
           {"keypoints", RunKeypoints, KeypointSeeds, 8192},
           {"image", RunImage, ImageSeeds, 8192},
           {"player_inputs", RunGate, GateSeeds, 4096},
