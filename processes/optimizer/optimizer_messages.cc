@@ -108,6 +108,17 @@ std::int8_t ToStatus(FrameEstimate::Status status) {
   return state_estimate_t::STATUS_INVALID;
 }
 
+/// A system of hardly any information may come out of its inversion with variances below zero, or
+/// beyond what receivers take: then it says that nothing is known.
+Eigen::Matrix<double, 6, 6> Published(const Eigen::Matrix<double, 6, 6>& covariance) {
+  constexpr double kMaxVariance = 1e12;  // as Validate() has it
+  constexpr double kUnknownVariance = 1e6;
+  const bool is_sane = covariance.allFinite() && covariance.diagonal().minCoeff() >= 0 &&
+                       covariance.cwiseAbs().maxCoeff() <= kMaxVariance;
+  if (is_sane) return covariance;
+  return kUnknownVariance * Eigen::Matrix<double, 6, 6>::Identity();
+}
+
 human_state_t ToHumanState(const HumanState& state) {
   human_state_t message{};
   message.track_id = state.id.value;
@@ -233,7 +244,8 @@ state_estimate_t ToStateEstimate(const Header& header, const FrameEstimate& esti
   message.session = header.session;
   message.status = ToStatus(estimate.status);
   FromSe3(estimate.T_W_C, message.position_W_C, message.orientation_W_C);
-  for (int i = 0; i < 36; ++i) message.covariance[i] = estimate.covariance(i / 6, i % 6);
+  const auto covariance = Published(estimate.covariance);
+  for (int i = 0; i < 36; ++i) message.covariance[i] = covariance(i / 6, i % 6);
   message.trusted = estimate.trusts_people ? state_estimate_t::TRUSTED_WITH_PEOPLE
                                            : state_estimate_t::TRUSTED_WITHOUT_PEOPLE;
   FromSe3(estimate.T_W_C_without_people, message.position_without_people_W_C,
