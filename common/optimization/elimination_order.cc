@@ -13,18 +13,12 @@ namespace {
 using Block = FactorGraph::Block;
 using Kind = FactorGraph::Kind;
 
-constexpr int kSweptSlices = 4;  // a piece of so many is not parted again
-constexpr int kMaxInner = 64;
-
-struct Edge {
-  int a, b;  // blocks
-};
+constexpr std::size_t kMaxSlice = 64;
 
 /// One track of the graph.
 struct Track {
   std::map<int, std::vector<int>> slices;  // blocks, in order of time
   std::vector<int> whole;
-  std::vector<Edge> edges;  // between blocks of slices
 };
 
 class Orderer {
@@ -98,65 +92,70 @@ class Orderer {
 
   void AddTrack(const Track& track) {
     BeginGroup();
-    std::vector<std::vector<int>> chain;
-    for (const auto& [slice, blocks] : track.slices) {
-      EliminateInner(blocks);
-      std::vector<int> rest;
-      for (const int block : blocks) {
-        if (has_other_slice_[block]) rest.push_back(block);
-      }
-      if (!rest.empty()) chain.push_back(std::move(rest));
-    }
-    Dissect(chain, 0, static_cast<int>(chain.size()));
+    std::vector<const std::vector<int>*> slices;
+    for (const auto& [slice, blocks] : track.slices) slices.push_back(&blocks);
+    Dissect(slices, 0, static_cast<int>(slices.size()));
     if (!track.whole.empty()) order_.fronts.push_back(track.whole);
   }
 
-  /// Those of a slice that have no partner in other slices, least neighbours first.
-  void EliminateInner(const std::vector<int>& blocks) {
-    std::vector<std::uint64_t> adjacent(blocks.size(), 0);  // bits: places in `blocks`
-    std::uint64_t inner = 0;
+  void Dissect(const std::vector<const std::vector<int>*>& slices, int begin, int end) {
+    if (begin == end) return;
+    const int middle = (begin + end) / 2;
+    const bool is_piece = end - begin == 1;
+    Dissect(slices, begin, middle);
+    Dissect(slices, middle + 1, end);
+    AddSlice(*slices[middle], is_piece);
+  }
+
+  /// One by one, least neighbours within the slice first, until the rest all know each other; that
+  /// is one front. Between two pieces (not `is_piece`) all that has partners in other slices is
+  /// left for that front.
+  void AddSlice(const std::vector<int>& blocks, bool is_piece) {
+    if (blocks.size() > kMaxSlice) {  // unlike anything we make; any order is right
+      order_.fronts.push_back(blocks);
+      return;
+    }
+    Adjacency adjacent(blocks.size(), 0);
+    std::uint64_t left = 0, alone = 0;  // of those left: to be eliminated one by one
     for (std::size_t i = 0; i < blocks.size(); ++i) place_[blocks[i]] = i;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
-      if (has_other_slice_[blocks[i]]) continue;
-      if (blocks.size() > kMaxInner) {  // unlike anything we make; any order is right
-        order_.fronts.push_back({blocks[i]});
-        continue;
-      }
-      inner |= std::uint64_t{1} << i;
-    }
-    for (std::size_t i = 0; inner != 0 && i < blocks.size(); ++i) {
+      left |= std::uint64_t{1} << i;
+      if (is_piece || !has_other_slice_[blocks[i]]) alone |= std::uint64_t{1} << i;
       for (const int other : neighbours_[blocks[i]]) {
         adjacent[i] |= std::uint64_t{1} << place_[other];
       }
     }
-    while (inner != 0) {
-      std::size_t best = 0;
-      std::size_t least = kMaxInner + 1;
-      for (std::size_t i = 0; i < blocks.size(); ++i) {
-        const std::size_t num = std::bitset<kMaxInner>(adjacent[i]).count();
-        if ((inner >> i & 1) == 0 || num >= least) continue;
-        best = i;
-        least = num;
-      }
-      order_.fronts.push_back({blocks[best]});
+    while (alone != 0) {
+      const std::size_t best = LeastNeighbours(adjacent, alone);
       const std::uint64_t bit = std::uint64_t{1} << best;
-      inner &= ~bit;
+      if (alone == left && (adjacent[best] | bit) == left) break;  // the least knows all
+      order_.fronts.push_back({blocks[best]});
+      alone &= ~bit;
+      left &= ~bit;
       for (std::size_t i = 0; i < blocks.size(); ++i) {
         if ((adjacent[best] >> i & 1) == 0) continue;
         adjacent[i] = (adjacent[i] | adjacent[best]) & ~(bit | std::uint64_t{1} << i);
       }
     }
+    std::vector<int> rest;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      if (left >> i & 1) rest.push_back(blocks[i]);
+    }
+    if (!rest.empty()) order_.fronts.push_back(std::move(rest));
   }
 
-  void Dissect(const std::vector<std::vector<int>>& chain, int begin, int end) {
-    if (end - begin <= kSweptSlices) {
-      for (int i = begin; i < end; ++i) order_.fronts.push_back(chain[i]);
-      return;
+  using Adjacency = std::vector<std::uint64_t>;  // bits: places in the slice
+
+  static std::size_t LeastNeighbours(const Adjacency& adjacent, std::uint64_t candidates) {
+    std::size_t best = 0;
+    std::size_t least = kMaxSlice + 1;
+    for (std::size_t i = 0; i < adjacent.size(); ++i) {
+      const std::size_t num = std::bitset<kMaxSlice>(adjacent[i]).count();
+      if ((candidates >> i & 1) == 0 || num >= least) continue;
+      best = i;
+      least = num;
     }
-    const int middle = (begin + end) / 2;
-    Dissect(chain, begin, middle);
-    Dissect(chain, middle + 1, end);
-    order_.fronts.push_back(chain[middle]);
+    return best;
   }
 
   const FactorGraph& graph_;

@@ -18,13 +18,14 @@ struct EliminationOrder {
 
 /// Landmarks, then track by track, then the poses in one front. Within a track:
 ///
-///  1. slice by slice what has no partner in another slice (the joints of the limbs), each alone,
-///     the one with the fewest neighbours first: from the leaves to the root;
-///  2. what remains of the slices (torso and velocity; all points of a rigid object) by nested
-///     dissection in time: the slice in the middle parts the track into two that do not know of
-///     each other, and is eliminated after both; pieces of few slices are swept from their start.
-///     Against one sweep from end to end this halves the cost, as every piece only carries the
-///     poses of its own frames;
+///  1. its slices by nested dissection in time: the slice in the middle parts the track into two
+///     that do not know of each other, and is eliminated after both. Against a sweep from end to
+///     end this halves the cost and more, as every piece carries the poses of its own frames only;
+///  2. within a slice that stands between two pieces, first what has no partner in other slices
+///  (the
+///     joints of the limbs), each alone, the one with the fewest neighbours first: from the leaves
+///     to the root; then the rest (torso and velocity; all points of a rigid object) in one front.
+///     A slice that is parted no more is taken apart the same way altogether;
 ///  3. what belongs to the whole track (lengths, a motion over the track).
 ///
 /// Any order is right: what couples unknowns in a way not foreseen here only costs more.
