@@ -4,12 +4,12 @@
 // that kind in the folder ba_problems of the test data, variants reproj (measurements only), worig
 // (and motion), womot (and rigidity), full. One iteration of the benchmark solves one file from its
 // start values at a function tolerance of 1e-6, graph and set-up included, with the same steps as
-// Ceres (steps_by_track off), so that both end at the same cost; the counters are medians
-// over the files.
+// Ceres (steps_by_track off), so that both end at the same cost; the counters are medians over the
+// files.
 //
-// BM_Scaling/<people>/<window>/<solver>/<cold|warm>: 14 joints each, 300 static points. Cold: from
-// start values as a front end has them, a few centimetres off. Warm: one frame more on a window
-// that is solved.
+// BM_Scaling/<people>/<window>/<solver>/<cold|warm>: 14 joints each, 300 static points, with the
+// iterations and the tolerance that the optimizer has. Cold: poses by odometry, everything
+// triangulated. Warm: one frame more on a window that is solved.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

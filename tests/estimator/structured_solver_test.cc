@@ -236,6 +236,54 @@ TEST_P(StructuredSolverTest, OneStepSolvesTheDenseNormalEquations) {
   EXPECT_LT((*step - expected).norm(), 1e-9 * expected.norm());
 }
 
+TEST(BlockEliminationTest, AGroupsShareFollowsThePosesAsItsSchurComplementSays) {
+  // One group of four unknowns and two poses; the numbers are random.
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const std::vector<int> dims = {3, 1, 3, 3, 6, 6};
+  const std::vector<int> group_begins = {0, 4, 6};
+  BlockMatrix H(dims, group_begins);
+  for (const auto& [row, col] : std::vector<std::pair<int, int>>{
+           {0, 1}, {0, 2}, {0, 4}, {2, 3}, {1, 3}, {2, 5}, {3, 5}, {4, 4}, {5, 5}}) {
+    H.Offset(row, col, 0);
+  }
+  const int own = H.first_pose_scalar(), poses = H.num_pose_scalars(), all = H.num_scalars();
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(all, all);  // of the group's layer
+  for (int row = 0; row < H.num_blocks(); ++row) {
+    for (int e = H.first_entry(row); e >= 0; e = H.entries()[static_cast<std::size_t>(e)].next) {
+      const BlockMatrix::Entry& entry = H.entries()[static_cast<std::size_t>(e)];
+      for (int i = 0; i < H.dim(row); ++i) {
+        for (int j = row == entry.col ? i : 0; j < H.dim(entry.col); ++j) {
+          const double value = uniform(random) + (row == entry.col && i == j ? 10 : 0);
+          H.values()[entry.offset + i * H.dim(entry.col) + j] = value;
+          if (entry.layer != 0) continue;
+          dense(H.begin(row) + i, H.begin(entry.col) + j) = value;
+          dense(H.begin(entry.col) + j, H.begin(row) + i) = value;
+        }
+      }
+    }
+  }
+  BlockElimination elimination(H, {0, 1, 2, 4, 6}, {0, 3, 4}, nullptr);
+  Eigen::VectorXd b(elimination.vector_size()), d(elimination.vector_size());
+  for (Eigen::VectorXd* vector : {&b, &d}) {
+    for (double& value : *vector) value = uniform(random);
+  }
+  const int share = elimination.share_begin(0);
+  const auto H_oo = dense.topLeftCorner(own, own);
+  const auto H_op = dense.topRightCorner(own, poses);
+  const Eigen::MatrixXd S =
+      dense.bottomRightCorner(poses, poses) - H_op.transpose() * H_oo.llt().solve(H_op);
+  const Eigen::VectorXd reduced =
+      b.segment(share, poses) - H_op.transpose() * H_oo.llt().solve(b.head(own));
+  ASSERT_TRUE(elimination.Eliminate(H, Eigen::VectorXd::Zero(all), 0));
+  const Eigen::VectorXd of_poses = b.segment(own, poses);
+  elimination.SolveForward(0, &b);
+  EXPECT_LT((b.segment(share, poses) - reduced).norm(), 1e-12);
+  EXPECT_EQ(b.segment(own, poses), of_poses);  // the poses' own part is left alone
+  elimination.MoveShare(0, d, &b);
+  EXPECT_LT((b.segment(share, poses) - (reduced - S * d.segment(own, poses))).norm(), 1e-12);
+}
+
 TEST(StructuredMinimizerTest, AnIterationAllocatesNothing) {
   RandomBundleOptions random;
   random.outliers = 0.02;
