@@ -12,7 +12,7 @@
 namespace airdos {
 namespace {
 
-constexpr std::size_t kMaxMessageBytes = 128 << 10;  // above, default receive buffers lose messages
+constexpr std::size_t kLargeMessageBytes = 128 << 10;  // above, default receive buffers lose messages
 
 template <class Message>
 std::string RejectAs(const LogEvent& event) {
@@ -64,7 +64,7 @@ void LogSurvey::Take(const LogEvent& event) {
   Channel& channel = channels_[event.channel];
   ++channel.num_messages;
   channel.max_bytes = std::max(channel.max_bytes, event.payload.size());
-  channel.num_large += event.payload.size() > kMaxMessageBytes ? 1 : 0;
+  channel.num_large += event.payload.size() > kLargeMessageBytes ? 1 : 0;
   const std::string reject = Reject(event);
   if (!reject.empty()) {
     findings_->Fail("log.rejected", path_ + ": event " + std::to_string(event.number),
@@ -138,7 +138,7 @@ void LogSurvey::Report() const {
     if (channel.num_large == 0) continue;
     findings_->Warn("log.size", path_ + ": " + name,
                     std::to_string(channel.num_large) + " messages are larger than " +
-                        std::to_string(kMaxMessageBytes >> 10) + " kB (up to " +
+                        std::to_string(kLargeMessageBytes >> 10) + " kB (up to " +
                         std::to_string(channel.max_bytes >> 10) +
                         " kB): receivers with default buffers lose them");
   }

@@ -37,19 +37,19 @@ TEST(SimulatedLogTest, EveryMessageIsValidAndEveryFrameComplete) {
         const std::size_t size = envelope.payload.size();
         if (envelope.channel == channel::kCalibration) ++num_calibrations;
         if (envelope.channel == channel::kStaticFeatures) {
-          static_features_t message;
+          static_features_t message = {};
           ASSERT_TRUE(Decode(data, size, &message));
           EXPECT_EQ(Validate(message), "");
           EXPECT_EQ(message.seq, static_cast<std::int64_t>(k));
           EXPECT_EQ(message.num_features, sequence.options.static_per_frame);
           ++num_features;
         } else if (envelope.channel == channel::kHumanObservations) {
-          human_observations_t message;
+          human_observations_t message = {};
           ASSERT_TRUE(Decode(data, size, &message));
           EXPECT_EQ(Validate(message), "");
           ++num_humans;
         } else if (envelope.channel == channel::kGroundTruth) {
-          pose_t message;
+          pose_t message = {};
           ASSERT_TRUE(Decode(data, size, &message));
           EXPECT_LT(Boxminus(ToSe3(message.position, message.orientation), sequence.frames[k].T_W_C)
                         .norm(),
