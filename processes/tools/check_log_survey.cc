@@ -12,7 +12,8 @@
 namespace airdos {
 namespace {
 
-constexpr std::size_t kLargeMessageBytes = 128 << 10;  // above, default receive buffers lose messages
+constexpr std::size_t kLargeMessageBytes = 128
+                                           << 10;  // above, default receive buffers lose messages
 
 template <class Message>
 std::string RejectAs(const LogEvent& event) {
