@@ -17,6 +17,16 @@
 namespace airdos {
 namespace {
 
+/// How many deadlines to wait for a channel. Who speaks on it may wait for its own inputs, so
+/// whoever is further down the chain gives up later: else one silent camera would cost two
+/// processes their frame.
+double NumDeadlines(const std::string& channel) {
+  if (IsInputChannel(channel)) return 1;
+  if (channel == channel::kHumanObservations) return 1.25;
+  if (channel == channel::kStaticFeatures) return 1.5;
+  return 1.75;
+}
+
 constexpr int kPollTimeout_ms = 50;
 constexpr double kStatusPeriod_s = 1.0;
 constexpr int kMaxDrained = 1000;  // messages that are taken in at once
@@ -115,27 +125,28 @@ double LcmRunner::Patience_s() {
     const bool has_spoken = node_->channels().at(it->first).num_received > it->second;
     it = has_spoken ? silent_.erase(it) : std::next(it);
   }
-  if (silent_.empty()) return options_.deadline_s;
   std::istringstream words(node_->waiting_for());
-  std::size_t num_awaited = 0;
-  double patience_s = 0;
-  for (std::string channel; words >> channel; ++num_awaited) {
-    if (silent_.count(channel) == 0) return options_.deadline_s;
-    if (!IsInputChannel(channel)) patience_s = 0.1 * options_.deadline_s;
+  bool are_silent = true;  // all of them, and some there are
+  double deadlines = 0;
+  for (std::string channel; words >> channel;) {
+    are_silent = are_silent && silent_.count(channel) > 0;
+    deadlines = std::max(deadlines, NumDeadlines(channel));
   }
-  return num_awaited > 0 ? patience_s : options_.deadline_s;
+  if (deadlines == 0) return options_.deadline_s;
+  if (!are_silent) return deadlines * options_.deadline_s;
+  return deadlines == 1 ? 0 : 0.1 * options_.deadline_s;
 }
 
 void LcmRunner::CompleteAfterDeadline() {
   if (node_->num_pending() == 0) return;
-  if (SteadyClock_s() - progress_s_ < Patience_s()) return;
+  const double waited_s = Patience_s();
+  if (SteadyClock_s() - progress_s_ < waited_s) return;
   const std::string silent = node_->waiting_for();
   NoteSilent(silent);
   is_stalled_ = true;
   if (silent_said_.insert(silent).second) {
     std::ostringstream line;
-    line << "nothing on " << silent << " for " << options_.deadline_s
-         << " s: frames are completed without it";
+    line << "nothing on " << silent << " for " << waited_s << " s: frames are completed without it";
     Say(line.str());
   }
   PublishStatus(process_status_t::STATE_STALLED);  // while waiting_for() still names the channels
