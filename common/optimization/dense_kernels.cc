@@ -1,7 +1,6 @@
 #include "common/optimization/dense_kernels.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "common/util/check.h"
@@ -9,50 +8,132 @@
 namespace airdos {
 namespace {
 
-constexpr int kTile = 4;  // of 4 x 4 doubles, which stay in registers
+/// Doubles side by side, of which one register holds two, or four with AVX. Each is summed up by
+/// itself, in the same order either way, and never fused: the bits of a result do not depend on the
+/// processor.
+template <int kNum>
+struct Doubles {
+  // The vector may lie at any double.
+  typedef double Vector __attribute__((vector_size(kNum * sizeof(double)), aligned(8), may_alias));
+};
+
+constexpr int kTileRows = 4;  // of 4 x 8 doubles, which stay in registers
 constexpr int kRowsPerStep = 8;
 
-template <int kRows, int kCols>
-void SubtractTile(const double* a, const double* b, const ProductShape& shape, double* c) {
-  using Row = Eigen::Array<double, 1, kCols>;
-  std::array<Row, kRows> sum;
-  for (Row& row : sum) row.setZero();
+/// kRows x (kNum kCols) of C, in registers of kCols each.
+template <int kRows, int kNum, int kCols>
+[[gnu::always_inline]] inline void SubtractTile(const double* a, const double* b,
+                                                const ProductShape& shape, double* c) {
+  using Row = typename Doubles<kCols>::Vector;
+  Row sum[kRows][kNum];
+#pragma GCC unroll 4
+  for (int i = 0; i < kRows; ++i) {
+#pragma GCC unroll 2
+    for (int n = 0; n < kNum; ++n) sum[i][n] = Row{};
+  }
   for (int k = 0; k < shape.num_terms; ++k) {
-    const Row factor = Eigen::Map<const Row>(b);
-    for (int i = 0; i < kRows; ++i) sum[i] += a[i] * factor;
+    Row factor[kNum];
+#pragma GCC unroll 2
+    for (int n = 0; n < kNum; ++n) factor[n] = *reinterpret_cast<const Row*>(b + n * kCols);
+#pragma GCC unroll 4
+    for (int i = 0; i < kRows; ++i) {
+#pragma GCC unroll 2
+      for (int n = 0; n < kNum; ++n) sum[i][n] += a[i] * factor[n];
+    }
     a += shape.stride;
     b += shape.stride;
   }
-  for (int i = 0; i < kRows; ++i) Eigen::Map<Row>(c + i * shape.stride_c) -= sum[i];
+#pragma GCC unroll 4
+  for (int i = 0; i < kRows; ++i) {
+#pragma GCC unroll 2
+    for (int n = 0; n < kNum; ++n) {
+      *reinterpret_cast<Row*>(c + i * shape.stride_c + n * kCols) -= sum[i][n];
+    }
+  }
 }
 
-using Tile = void (*)(const double*, const double*, const ProductShape&, double*);
+/// kRows rows of C from column `j` on.
 template <int kRows>
-Tile FindTile(int cols) {
-  switch (cols) {
-    case 1:
-      return SubtractTile<kRows, 1>;
-    case 2:
-      return SubtractTile<kRows, 2>;
-    case 3:
-      return SubtractTile<kRows, 3>;
-    default:
-      return SubtractTile<kRows, 4>;
+[[gnu::always_inline]] inline void SubtractRows(const double* a, const double* b,
+                                                const ProductShape& shape, int j, double* c) {
+  for (; j + 8 <= shape.cols; j += 8) SubtractTile<kRows, 2, 4>(a, b + j, shape, c + j);
+  if (j + 4 <= shape.cols) {
+    SubtractTile<kRows, 1, 4>(a, b + j, shape, c + j);
+    j += 4;
+  }
+  if (j + 2 <= shape.cols) {
+    SubtractTile<kRows, 1, 2>(a, b + j, shape, c + j);
+    j += 2;
+  }
+  if (j == shape.cols) return;
+  for (int i = 0; i < kRows; ++i) {
+    double sum = 0;
+    for (int k = 0; k < shape.num_terms; ++k)
+      sum += a[k * shape.stride + i] * b[k * shape.stride + j];
+    c[i * shape.stride_c + j] -= sum;
   }
 }
 
-Tile FindTile(int rows, int cols) {
-  switch (rows) {
-    case 1:
-      return FindTile<1>(cols);
-    case 2:
-      return FindTile<2>(cols);
-    case 3:
-      return FindTile<3>(cols);
-    default:
-      return FindTile<4>(cols);
+[[gnu::always_inline]] inline void SubtractProductInline(const double* a, const double* b,
+                                                         const ProductShape& shape, double* c) {
+  int i = 0;
+  for (; i + kTileRows <= shape.rows; i += kTileRows) {
+    SubtractRows<kTileRows>(a + i, b, shape, shape.is_symmetric ? i : 0, c + i * shape.stride_c);
+  }
+  const int first = shape.is_symmetric ? i : 0;
+  double* const rest = c + i * shape.stride_c;
+  if (shape.rows - i == 3) {
+    SubtractRows<3>(a + i, b, shape, first, rest);
+  } else if (shape.rows - i == 2) {
+    SubtractRows<2>(a + i, b, shape, first, rest);
+  } else if (shape.rows - i == 1) {
+    SubtractRows<1>(a + i, b, shape, first, rest);
   }
 }
+
+/// target -= factor * row
+[[gnu::always_inline]] inline void SubtractScaled(const double* row, double factor, int num,
+                                                  double* target) {
+  using Four = Doubles<4>::Vector;
+  int i = 0;
+  for (; i + 4 <= num; i += 4) {
+    *reinterpret_cast<Four*>(target + i) -= factor * *reinterpret_cast<const Four*>(row + i);
+  }
+  for (; i < num; ++i) target[i] -= factor * row[i];
+}
+
+[[gnu::always_inline]] inline bool FactorisePanelInline(double* panel, int n, int width,
+                                                        int stride) {
+  for (int first = 0; first < n; first += kRowsPerStep) {
+    const int last = std::min(first + kRowsPerStep, n);
+    for (int i = first; i < last; ++i) {
+      double* const row = panel + i * stride;
+      const double pivot = row[i];
+      if (!(pivot > 0) || !std::isfinite(pivot)) return false;
+      const double scale = 1 / std::sqrt(pivot);
+      for (int j = i; j < width; ++j) row[j] *= scale;
+      for (int below = i + 1; below < last; ++below) {
+        SubtractScaled(row + below, row[below], width - below, panel + below * stride + below);
+      }
+    }
+    if (last == n) break;
+    const double* const rows = panel + first * stride + last;
+    SubtractProductInline(rows, rows, {last - first, stride, n - last, width - last, stride, true},
+                          panel + last * stride + last);
+  }
+  return true;
+}
+
+#if defined(__x86_64__)
+[[gnu::target("avx")]] void SubtractProductAvx(const double* a, const double* b,
+                                               const ProductShape& shape, double* c) {
+  SubtractProductInline(a, b, shape, c);
+}
+[[gnu::target("avx")]] bool FactorisePanelAvx(double* panel, int n, int width, int stride) {
+  return FactorisePanelInline(panel, n, width, stride);
+}
+bool HasAvx() { return __builtin_cpu_supports("avx") != 0; }
+#endif
 
 template <int kRows, int kA, int kB>
 void AddFixedProduct(const double* A, int stride_a, const double* B, int stride_b, double* C) {
@@ -82,44 +163,17 @@ AddProduct FindAddProduct(int a, int b) {
 }  // namespace
 
 void SubtractProduct(const double* a, const double* b, const ProductShape& shape, double* c) {
-  for (int i = 0; i < shape.rows; i += kTile) {
-    const int rows = std::min(kTile, shape.rows - i);
-    double* const c_row = c + i * shape.stride_c;
-    int j = shape.is_symmetric ? i : 0;
-    if (rows == kTile) {
-      for (; j + kTile <= shape.cols; j += kTile) {
-        SubtractTile<kTile, kTile>(a + i, b + j, shape, c_row + j);
-      }
-      if (j < shape.cols) FindTile<kTile>(shape.cols - j)(a + i, b + j, shape, c_row + j);
-      continue;
-    }
-    for (; j < shape.cols; j += kTile) {
-      FindTile(rows, std::min(kTile, shape.cols - j))(a + i, b + j, shape, c_row + j);
-    }
-  }
+#if defined(__x86_64__)
+  if (HasAvx()) return SubtractProductAvx(a, b, shape, c);
+#endif
+  SubtractProductInline(a, b, shape, c);
 }
 
 bool FactorisePanel(double* panel, int n, int width, int stride) {
-  for (int first = 0; first < n; first += kRowsPerStep) {
-    const int last = std::min(first + kRowsPerStep, n);
-    for (int i = first; i < last; ++i) {
-      double* const row = panel + i * stride;
-      const double pivot = row[i];
-      if (!(pivot > 0) || !std::isfinite(pivot)) return false;
-      const double scale = 1 / std::sqrt(pivot);
-      Eigen::Map<Eigen::ArrayXd>(row + i, width - i) *= scale;
-      for (int below = i + 1; below < last; ++below) {
-        const int num = width - below;
-        Eigen::Map<Eigen::ArrayXd>(panel + below * stride + below, num) -=
-            row[below] * Eigen::Map<const Eigen::ArrayXd>(row + below, num);
-      }
-    }
-    if (last == n) break;
-    const double* const rows = panel + first * stride + last;
-    SubtractProduct(rows, rows, {last - first, stride, n - last, width - last, stride, true},
-                    panel + last * stride + last);
-  }
-  return true;
+#if defined(__x86_64__)
+  if (HasAvx()) return FactorisePanelAvx(panel, n, width, stride);
+#endif
+  return FactorisePanelInline(panel, n, width, stride);
 }
 
 AddProduct FindAddProduct(int rows, int a, int b) {

@@ -18,7 +18,7 @@ class TwoHosts {
     kCable,   ///< a pair of virtual Ethernet interfaces
     kNothing  ///< none: whoever wants to connect them does, see lossy_link_main.cc
   };
-  /// `folder`: for what the helpers say.
+  /// `folder`: for what its functions say.
   TwoHosts(Link link, const std::string& folder);
 
   /// Why there are no two hosts here, or an empty text.
