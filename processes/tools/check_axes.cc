@@ -28,6 +28,7 @@ std::string NameOf(TrajectoryAxes axes) {
 /// First of the consecutive frames, all with ground truth, in which the camera travels farthest.
 std::optional<std::size_t> FarthestWindow(const std::vector<std::optional<Se3>>& poses,
                                           std::size_t size) {
+  if (size == 0) return std::nullopt;
   std::optional<std::size_t> best;
   double best_path_m = -1;
   for (std::size_t first = 0; first + size <= poses.size(); ++first) {
