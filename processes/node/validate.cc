@@ -338,8 +338,8 @@ std::string Validate(const frame_done_t& message) {
 std::string Validate(const process_status_t& message) {
   Checker check(message);
   if (message.process.empty()) check.Fail("process", 0, "letters: it must have a name");
-  for (const std::string* text :
-       {&message.process, &message.version, &message.waiting_for, &message.last_error}) {
+  for (const std::string* text : {&message.process, &message.version, &message.types_fingerprint,
+                                  &message.waiting_for, &message.last_error}) {
     check.Text("a text", *text);
   }
   check.Range("state", message.state, process_status_t::STATE_STARTING,

@@ -199,6 +199,7 @@ TEST(ValidateTest, Texts) {
                              [](frame_done_t* m) { m->process.assign(1001, 'a'); });
   using M = process_status_t;
   ExpectReject<M>("zero in it", [](M* m) { m->version = std::string(1, '\0'); });
+  ExpectReject<M>("zero in it", [](M* m) { m->types_fingerprint = std::string(1, '\0'); });
   ExpectReject<M>("zero in it", [](M* m) { m->last_error = std::string(1, '\0'); });
   ExpectReject<M>("zero in it", [](M* m) { m->waiting_for = std::string(1, '\0'); });
   ExpectReject<M>("zero in it", [](M* m) { m->channels[1].channel = std::string(1, '\0'); });
