@@ -24,7 +24,10 @@ constexpr std::size_t kMaxAllocationBytes = 64u << 20;
 
 class HostileFilesTest : public testing::Test {
  protected:
-  void SetUp() override { folder_ = fs::path(testing::TempDir()) / "airdos_hostile"; }
+  void SetUp() override {
+    const auto* const info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / (std::string("airdos_hostile_") + info->name());
+  }
   void TearDown() override { fs::remove_all(folder_); }
   std::string Write(const std::string& name, const std::string& bytes) {
     fs::create_directories((folder_ / name).parent_path());
