@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <exception>
 #include <limits>
 #include <map>
 #include <memory>
@@ -137,7 +138,9 @@ class FrameNode : public Node {
   virtual std::vector<std::string> MissingFeedback(const Header&) const { return {}; }
   /// A frame of another session than the one before is about to be processed: forget everything.
   virtual void StartSession(const Header& header) = 0;
-  /// Publishes exactly one output for the frame, whatever is missing from `inputs`.
+  /// Publishes exactly one output for the frame, whatever is missing from `inputs`. If it throws,
+  /// what it published is dropped and it is called again, with nothing in `inputs`, as others wait
+  /// for that output; then the exception goes on to whoever called Step() or CompleteOldest().
   virtual void ProcessFrame(const Header& header, Inputs inputs) = 0;
 
   /// Calibration of the frame in work.
@@ -256,7 +259,14 @@ class FrameNode : public Node {
       session_ = frame.header.session;
       StartSession(frame.header);
     }
-    ProcessFrame(frame.header, std::move(inputs));
+    const std::size_t num_published = this->num_published();
+    try {
+      ProcessFrame(frame.header, std::move(inputs));
+    } catch (const std::exception&) {
+      DropPublished(num_published);
+      ProcessFrame(frame.header, Inputs());
+      throw;
+    }
   }
 
   std::vector<std::string> channels_of_inputs_;

@@ -100,6 +100,10 @@ class Node {
     output_.push_back({channel, Encode(message)});
   }
 
+  /// Messages that wait for TakeOutput(), and how to take back those after the first `num_kept`.
+  std::size_t num_published() const { return output_.size(); }
+  void DropPublished(std::size_t num_kept) { output_.resize(num_kept); }
+
   ChannelCounters& counters(const std::string& channel) { return channels_[channel]; }
   FrameCounters& mutable_frames() { return frames_; }
   /// Bytes of the message that a handler works on.

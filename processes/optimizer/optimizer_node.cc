@@ -1,5 +1,7 @@
 #include "processes/optimizer/optimizer_node.h"
 
+#include <exception>
+
 #include "processes/optimizer/optimizer_messages.h"
 
 namespace airdos {
@@ -29,7 +31,13 @@ void OptimizerNode::ProcessFrame(const Header& header, OptimizerInputs inputs) {
   const FrameInput input =
       ToFrameInput(header, camera(), inputs.features ? &*inputs.features : nullptr,
                    inputs.humans ? &*inputs.humans : nullptr);
-  const FrameResult result = window_->Process(input);
+  FrameResult result;
+  try {
+    result = window_->Process(input);
+  } catch (const std::exception&) {
+    window_.reset();  // it may be halfway through; the front end knows where to go on
+    throw;
+  }
   Publish(channel::kStateEstimate, ToStateEstimate(header, result.estimate));
   for (const map_update_t& part : ToMapUpdates(header, result.changes)) {
     Publish(channel::kMapUpdate, part);

@@ -4,6 +4,7 @@
 
 #include <random>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ class ScribeNode : public FrameNode<Inputs> {
   }
   std::string text;
   std::set<std::int64_t> awaited_feedback;
+  std::int64_t fails_at = -1;  // this frame, as long as it has inputs
 
  protected:
   std::vector<std::string> MissingFeedback(const Header& header) const override {
@@ -49,6 +51,7 @@ class ScribeNode : public FrameNode<Inputs> {
     done.seq = header.seq;
     done.process = "scribe";
     Publish("OUT", done);
+    if (header.seq == fails_at && inputs.mask) throw std::runtime_error("halfway");
   }
 };
 
@@ -260,6 +263,22 @@ TEST(FrameNodeTest, FeedbackHoldsAFrameBack) {
   node.awaited_feedback.clear();
   Work(&node);
   EXPECT_EQ(node.text, "session7 0mp0@1 1mp0@1 ");
+}
+
+// Who waits for the output must not wait for ever, nor get two.
+TEST(FrameNodeTest, AFrameThatThrowsIsWorkedOnWithoutInputs) {
+  ScribeNode node;
+  node.fails_at = 1;
+  Give(&node, Calibration(1));
+  GiveFrame(&node, 0);
+  EXPECT_EQ(node.TakeOutput().size(), 1u);
+  EXPECT_THROW(GiveFrame(&node, 1), std::runtime_error);
+  EXPECT_EQ(node.text, "session7 0mp0@1 1mp0@1 1@1 ");
+  EXPECT_EQ(node.TakeOutput().size(), 1u);
+  EXPECT_EQ(node.last_finished()->seq, 1);
+  GiveFrame(&node, 2);
+  EXPECT_EQ(node.text, "session7 0mp0@1 1mp0@1 1@1 2mp0@1 ");
+  EXPECT_EQ(node.TakeOutput().size(), 1u);
 }
 
 TEST(FrameNodeTest, OnlyWhatCanStillComeIsWaitedFor) {
