@@ -102,21 +102,40 @@ std::optional<UnfinishedMap> FindUnfinishedMap(const std::string& directory, con
   return found;
 }
 
-/// A recording that was cut short must not be lost to the next one in the same place.
-void KeepUnfinishedMap(const std::string& path) {
-  if (!fs::exists(path)) return;
+std::string SessionDirectory(const std::string& directory, int number) {
+  return number == 1 ? directory : directory + "/session_" + std::to_string(number);
+}
+
+/// Whether there is a file that is no closed map.
+bool IsUnfinished(const std::string& path) {
+  if (!fs::exists(path)) return false;
   try {
     MapFileSummary summary;
-    if (ReadFourDMap(path, &summary).is_closed) return;
-  } catch (const InputError&) {  // no map at all: keep it as well
+    return !ReadFourDMap(path, &summary).is_closed;
+  } catch (const InputError&) {  // no map at all: it may be worth something to somebody
+    return true;
   }
-  for (int i = 1;; ++i) {
-    const std::string kept = path + ".unfinished_" + std::to_string(i);
-    if (fs::exists(kept)) continue;
-    std::error_code error;
-    fs::rename(path, kept, error);
-    if (error) throw InputError(path + ": cannot be renamed: " + error.message());
-    return;
+}
+
+void KeepMap(const std::string& path) {
+  if (!fs::exists(path)) return;
+  const std::string ending = IsUnfinished(path) ? ".unfinished_" : ".closed_";
+  int number = 1;
+  while (fs::exists(path + ending + std::to_string(number))) ++number;
+  std::error_code error;
+  fs::rename(path, path + ending + std::to_string(number), error);
+  if (error) throw InputError(path + ": cannot be renamed: " + error.message());
+}
+
+/// A run that was cut short must not be lost to the next one in the same place: its maps, the
+/// closed ones of its earlier sessions, too, get other names.
+void KeepMapsOfACutRun(const std::string& directory) {
+  int num_sessions = 0;  // of that run, as far as it came
+  for (int number = 1; fs::exists(SessionDirectory(directory, number)); ++number) {
+    if (IsUnfinished(SessionDirectory(directory, number) + kMapName)) num_sessions = number;
+  }
+  for (int number = 1; number <= num_sessions; ++number) {
+    KeepMap(SessionDirectory(directory, number) + kMapName);
   }
 }
 
@@ -159,11 +178,12 @@ void MapRecorderNode::StartSession(const Header& header) {
                      " is not recorded: there were " + std::to_string(kMaxSessions) + " before it");
   }
   ++num_sessions_;
-  session_directory_ = options_.directory;
-  if (num_sessions_ > 1) session_directory_ += "/session_" + std::to_string(num_sessions_);
-  if (num_sessions_ > 1 || !Resume(header)) {
+  session_directory_ = SessionDirectory(options_.directory, num_sessions_);
+  const bool is_first = num_sessions_ == 1;
+  if (!is_first || !Resume(header)) {
+    if (is_first) KeepMapsOfACutRun(options_.directory);
+    if (IsUnfinished(session_directory_ + kMapName)) KeepMap(session_directory_ + kMapName);
     MakeDirectory(session_directory_);
-    KeepUnfinishedMap(session_directory_ + kMapName);
     file_ = std::make_unique<MapFileWriter>(session_directory_ + kMapName);
     Append(HeadChunk(session_, std::string("airdos map_recorder ") + kVersion));
   }
@@ -173,11 +193,11 @@ void MapRecorderNode::StartSession(const Header& header) {
 
 bool MapRecorderNode::Resume(const Header& header) {
   // A session that was not the first one lies in a folder of its own.
-  std::string directory = options_.directory;
   int number = 1;
+  std::string directory = SessionDirectory(options_.directory, number);
   std::optional<UnfinishedMap> found = FindUnfinishedMap(directory, header);
   while (!found) {
-    directory = options_.directory + "/session_" + std::to_string(++number);
+    directory = SessionDirectory(options_.directory, ++number);
     if (!fs::exists(directory)) return false;
     found = FindUnfinishedMap(directory, header);
   }

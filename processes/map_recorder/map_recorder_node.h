@@ -40,9 +40,12 @@ struct MapRecorderInputs {
 /// A second session goes to `<directory>/session_2`, and so on. A map that was not closed (a kill)
 /// is gone on with if what comes is of its session and later than all of it: what is lost are the
 /// live poses of the chunk that was open and of the frames until the restart; refined poses come
-/// again as long as the optimizer has them in its window. Else it is kept under another name. A map
-/// that was closed is replaced. Until the map is closed ground truth and calibration lie beside it
-/// in `map.airdos.open`, so that a kill loses at most kGroundTruthPerNote poses of them.
+/// again as long as the optimizer has them in its window. Else it is kept under another name
+/// (map.airdos.unfinished_1), and so are the maps of that run's earlier sessions
+/// (map.airdos.closed_1). The maps of a run that came to its end are replaced.
+///
+/// Until a map is closed ground truth and calibration lie beside it in `map.airdos.open`, so that a
+/// kill loses at most kGroundTruthPerNote poses of them.
 ///
 /// Memory: the open chunk and the ground truth that is not written yet (at most kMaxGroundTruth
 /// poses).

@@ -324,6 +324,47 @@ TEST_F(MapRecorderTest, AnotherSessionGoesToItsOwnFolder) {
   EXPECT_TRUE(second.frames.at({0}).ground_truth);
 }
 
+// Killed in the second session: whoever goes on with it finds it, and whoever does not leaves both
+// maps alone.
+TEST_F(MapRecorderTest, AKillInTheSecondSessionCostsNoMapOfTheFirst) {
+  const std::string first = folder_ + "/a/map.airdos";
+  const std::string second = folder_ + "/a/session_2/map.airdos";
+  const auto session_43 = [](std::int64_t first_seq, std::int64_t last_seq) {
+    std::vector<Envelope> messages;
+    for (std::int64_t seq = first_seq; seq <= last_seq; ++seq) {
+      messages.push_back(State(seq, 43));
+      messages.push_back(Update(seq, 0, 1, 43));
+    }
+    return messages;
+  };
+  {
+    MapRecorderNode killed(Options("a"));
+    Feed(Recording(3), &killed);
+    Feed(session_43(0, 9), &killed);
+    fs::copy(second, folder_ + "/killed");
+  }
+  fs::copy(folder_ + "/killed", second, fs::copy_options::overwrite_existing);
+  {
+    MapRecorderNode node(Options("a"));
+    Feed(session_43(10, 11), &node);
+  }
+  EXPECT_EQ(Read(folder_ + "/a").session, kSession);
+  EXPECT_EQ(Read(folder_ + "/a/session_2").frames.rbegin()->first.value, 11);
+
+  fs::copy(folder_ + "/killed", second, fs::copy_options::overwrite_existing);
+  for (int run = 0; run < 2; ++run) {  // the second finds nothing cut short, and replaces
+    MapRecorderNode node(Options("a"));
+    Feed({State(0, 44), Update(0, 0, 1, 44)}, &node);
+    CompleteAll(&node);
+  }
+  MapFileSummary summary;
+  EXPECT_EQ(ReadFourDMap(first + ".closed_1", &summary).frames.size(), 3u);
+  EXPECT_EQ(ReadFourDMap(second + ".unfinished_1", &summary).session, 43);
+  EXPECT_EQ(Read(folder_ + "/a").session, 44);
+  EXPECT_FALSE(fs::exists(first + ".closed_2"));
+  EXPECT_FALSE(fs::exists(second));
+}
+
 // Each has a folder, and whoever invents sessions must not fill the disk with them.
 TEST_F(MapRecorderTest, SessionsBeyondTheBoundAreNotRecorded) {
   MapRecorderOptions options = Options("a");
