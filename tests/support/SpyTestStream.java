@@ -38,6 +38,7 @@ final class SpyTestStream {
   static final int WIDTH = 640;
   static final int HEIGHT = 360;
   static final long SESSION = 7;
+  static final String FINGERPRINT = "0123456789abcdef";
   static final long FRAME_US = 100_000;
   private static final float TRACKED_FROM_CONFIDENCE = 0.5f;
   private static final double[] UPRIGHT = {1, 0, 0, 0};
@@ -299,7 +300,7 @@ final class SpyTestStream {
     message.session = SESSION;
     message.process = process;
     message.version = "test";
-    message.types_fingerprint = "test";
+    message.types_fingerprint = FINGERPRINT;
     message.state = process.equals("frontend")
         ? process_status_t.STATE_READY
         : process_status_t.STATE_STALLED;

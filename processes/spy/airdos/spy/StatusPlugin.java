@@ -28,8 +28,10 @@ public final class StatusPlugin implements SpyPlugin {
   static final String NAME = "Processes";
   private static final String CHANNEL = "STATUS";
   private static final int REFRESH_MS = 500;
-  private static final Dimension SIZE = new Dimension(1180, 260);
-  private static final int[] COLUMN_WIDTHS = {110, 80, 55, 80, 60, 60, 65, 60, 60, 95, 85, 200, 150};
+  private static final Dimension SIZE = new Dimension(1360, 260);
+  private static final int[] COLUMN_WIDTHS = {
+    110, 80, 55, 80, 60, 60, 65, 60, 60, 95, 85, 60, 130, 200, 150
+  };
 
   public StatusPlugin() {}
 

@@ -16,7 +16,8 @@ final class StatusTableModel extends AbstractTableModel {
 
   private static final String[] COLUMNS = {
     "process", "state", "frames", "incomplete", "skipped", "missing", "rejected",
-    "p50 ms", "p99 ms", "cpu ms/frame", "memory MB", "waiting for", "last error"
+    "p50 ms", "p99 ms", "cpu ms/frame", "memory MB", "version", "types", "waiting for",
+    "last error"
   };
 
   private static final class Row {
@@ -101,6 +102,10 @@ final class StatusTableModel extends AbstractTableModel {
       case 10:
         return tenths(status.memory_mb);
       case 11:
+        return status.version;
+      case 12: // the same text in each row, unless somebody was built with other message types
+        return status.types_fingerprint;
+      case 13:
         return status.waiting_for;
       default:
         return status.last_error;
