@@ -2,8 +2,9 @@
 # Looks for inputs that crash, throw, hang or take more than 64 MB at once: builds the fuzz targets (tests/fuzz) with clang's
 # libFuzzer under the address and undefined-behaviour sanitizers, and runs each for some seconds.
 #
-# Usage: launch_scripts/fuzz.sh [--seconds N] [--build-only] [TARGET…]
-#   --seconds N   for each target (default 10; an hour for all 18: 200)
+# Usage: launch_scripts/fuzz.sh [--seconds N] [--jobs N] [--build-only] [TARGET…]
+#   --seconds N   for each target (default 10; an hour in all for the 24 targets: 150)
+#   --jobs N      so many targets at a time (default: one a processor)
 #   --build-only  do not run
 #   --list        the names of the targets (after a build)
 #   --help        this text
@@ -18,14 +19,14 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 readonly FOLDER=${AIRDOS_FUZZ_BUILD:-$AIRDOS_ROOT/build-fuzz}
 readonly EXIT_SKIPPED=77
 
-seconds=10 build_only=no list=no
+seconds=10 jobs=$(nproc) build_only=no list=no
 targets=()
 while (($# > 0)); do
   case $1 in
-    --seconds)
+    --seconds | --jobs)
       need_value "$@"
-      [[ $2 =~ ^[1-9][0-9]*$ ]] || die_usage "--seconds: not a whole number above 0: '$2'"
-      seconds=$2
+      [[ $2 =~ ^[1-9][0-9]*$ ]] || die_usage "$1: not a whole number above 0: '$2'"
+      printf -v "${1#--}" '%s' "$2"
       shift
       ;;
     --build-only) build_only=yes ;;
@@ -94,12 +95,24 @@ fi
 if [[ $build_only == yes ]]; then exit 0; fi
 
 "$FOLDER/bin/airdos_fuzz_seeds" "$FOLDER/seeds" "$AIRDOS_ROOT/logs/road_crossing06.lcm"
-failed=0 num_run=0
-while read -r name max_bytes; do
+failed=0 num_ended=0
+pids=()
+
+# Until the one that runs longest has ended; they all take as long.
+await_target() {
+  wait "${pids[num_ended]}" || failed=$((failed + 1))
+  num_ended=$((num_ended + 1))
+}
+
+mapfile -t all < <("$FOLDER/bin/airdos_fuzz_list")
+for target in "${all[@]}"; do
+  read -r name max_bytes <<< "$target"
   if ((${#targets[@]} > 0)) && [[ " ${targets[*]} " != *" $name "* ]]; then continue; fi
-  num_run=$((num_run + 1))
-  run_target "$name" "$max_bytes" || failed=$((failed + 1))
-done < <("$FOLDER/bin/airdos_fuzz_list")
-((num_run > 0)) || die_usage "no such target: ${targets[*]} (see --list)"
-say "$num_run targets for $seconds s each, $failed failed"
+  if ((${#pids[@]} - num_ended >= jobs)); then await_target; fi
+  run_target "$name" "$max_bytes" &
+  pids+=($!)
+done
+while ((num_ended < ${#pids[@]})); do await_target; done
+((${#pids[@]} > 0)) || die_usage "no such target: ${targets[*]} (see --list)"
+say "${#pids[@]} targets for $seconds s each, $failed failed"
 ((failed == 0))

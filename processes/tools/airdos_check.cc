@@ -1,11 +1,11 @@
 // airdos-check: whether a folder or a log can be used, before it is.
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "common/util/error.h"
+#include "common/util/json_file.h"
 #include "common/util/version.h"
 #include "processes/node/process_cli.h"
 #include "processes/tools/check_folder.h"
@@ -38,12 +38,7 @@ int main(int argc, char** argv) {
       airdos::CheckLog(input, options, &findings);
     }
     findings.Print(input, &std::cout);
-    if (!json_path.empty()) {
-      std::ofstream file(json_path);
-      file << findings.ToJson(input).dump(2) << "\n";
-      file.close();
-      if (!file) throw airdos::InputError(json_path + ": cannot be written");
-    }
+    if (!json_path.empty()) airdos::WriteJson(findings.ToJson(input), json_path);
     return findings.has_errors() ? 1 : 0;
   });
 }

@@ -1,10 +1,10 @@
 // airdos-doctor: whether this machine can run the processes, and what mends it.
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "common/util/error.h"
+#include "common/util/json_file.h"
 #include "common/util/version.h"
 #include "processes/node/lcm_transport.h"
 #include "processes/node/process_cli.h"
@@ -56,12 +56,7 @@ int Run(const Arguments& arguments) {
   Append(JudgeDisk(arguments.run_dir), &result);
   Append(JudgeSpy(DefaultSpyPlaces()), &result);
   Print(result, &std::cout);
-  if (!arguments.json.empty()) {
-    std::ofstream file(arguments.json);
-    file << ToJson(result).dump(2) << "\n";
-    file.close();
-    if (!file) throw InputError(arguments.json + ": cannot be written");
-  }
+  if (!arguments.json.empty()) WriteJson(ToJson(result), arguments.json);
   return HasFail(result) ? 1 : 0;
 }
 

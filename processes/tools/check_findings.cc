@@ -19,11 +19,24 @@ const char* NameOf(Severity severity) {
   return "error";
 }
 
+namespace {
+
+/// Findings quote files: no control character of them may reach a terminal.
+std::string Printable(std::string text) {
+  for (char& c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f) c = '?';
+  }
+  return text;
+}
+
+}  // namespace
+
 void FindingList::Add(Severity severity, const std::string& kind, const std::string& where,
                       const std::string& what) {
   ++num_of_severity_[severity];
   if (++num_of_kind_[kind] > kMaxPerKind) return;
-  findings_.push_back({severity, kind, where, what});
+  findings_.push_back({severity, kind, Printable(where), Printable(what)});
 }
 
 void FindingList::FailFrom(const std::string& kind, const std::string& text) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/simulation/settings.h"
+#include "common/util/json_file.h"
 #include "processes/tools/ablation.h"
 #include "processes/tools/ablation_report.h"
 #include "processes/tools/do_no_harm.h"

@@ -2,8 +2,6 @@
 #define AIRDOS_PROCESSES_TOOLS_EVALUATE_COMMAND_H_
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json_fwd.hpp>
-#include <string>
 
 namespace airdos {
 
@@ -15,9 +13,6 @@ void AddPeopleCommand(CLI::App* app);
 void AddCurveCommand(CLI::App* app);
 void AddSpeedCommand(CLI::App* app);
 void AddAblationCommand(CLI::App* app);
-
-/// Writes a file of indented JSON. Throws InputError where it cannot be written.
-void WriteJson(const nlohmann::json& json, const std::string& path);
 
 }  // namespace airdos
 

@@ -9,6 +9,7 @@
 #include "common/evaluation/help_curve_plot.h"
 #include "common/evaluation/trajectory_plot.h"
 #include "common/util/error.h"
+#include "common/util/json_file.h"
 #include "processes/tools/evaluate_command.h"
 
 namespace airdos {

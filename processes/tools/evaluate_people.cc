@@ -4,6 +4,7 @@
 #include <string>
 
 #include "common/evaluation/people_report.h"
+#include "common/util/json_file.h"
 #include "processes/tools/evaluate_command.h"
 
 namespace airdos {

@@ -7,6 +7,7 @@
 #include "common/evaluation/speed_report.h"
 #include "common/evaluation/trajectory_plot.h"
 #include "common/util/error.h"
+#include "common/util/json_file.h"
 #include "processes/tools/evaluate_command.h"
 
 namespace airdos {

@@ -5,6 +5,7 @@
 
 #include "common/evaluation/trajectory_plot.h"
 #include "common/evaluation/trajectory_report.h"
+#include "common/util/json_file.h"
 #include "processes/tools/evaluate_command.h"
 
 namespace airdos {

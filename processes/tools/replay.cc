@@ -16,6 +16,7 @@
 #include "airdos/state_estimate_t.hpp"
 #include "common/util/digest.h"
 #include "common/util/error.h"
+#include "common/util/json_file.h"
 #include "processes/node/channels.h"
 #include "processes/node/codec.h"
 #include "processes/node/fifo_bus.h"
@@ -267,10 +268,7 @@ void WriteTiming(const ReplayResult& result, const std::string& path) {
                                {"wall_ms", to_json(timing.wall_ms)},
                                {"cpu_ms", to_json(timing.cpu_ms)}};
   }
-  std::ofstream file(path);
-  file << json.dump(2) << "\n";
-  file.close();
-  if (!file) throw InputError(path + ": cannot be written");
+  WriteJson(json, path);
 }
 
 }  // namespace airdos

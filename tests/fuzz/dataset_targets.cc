@@ -1,10 +1,13 @@
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/dataset/oxts.h"
 #include "common/dataset/sequence_files.h"
 #include "common/dataset/stereo_sequence.h"
 #include "common/util/error.h"
+#include "common/util/json_file.h"
 #include "processes/stereo_player/stereo_player.h"
+#include "processes/tools/check_folder.h"
 #include "tests/fuzz/fuzz_input.h"
 
 namespace airdos {
@@ -89,8 +92,18 @@ void Play(const std::string& folder) {
   }
 }
 
+/// As airdos-check does it.
+void Check(const std::string& folder) {
+  FindingList findings;
+  try {
+    CheckFolder(folder, {2, 2}, &findings);
+  } catch (const InputError&) {
+  }
+  JsonText(findings.ToJson(folder));
+}
+
 /// The input replaces files of a good data set: number, length, content.
-void RunLayout(const Layout& layout, FuzzInput input) {
+void RunLayout(const Layout& layout, FuzzInput input, void (*use)(const std::string&) = Play) {
   const std::string folder = FuzzFolder::Path() + "/data";
   std::vector<std::pair<std::string, std::string>> files = layout.files;
   while (!input.empty()) {
@@ -102,7 +115,7 @@ void RunLayout(const Layout& layout, FuzzInput input) {
     fs::create_directories(fs::path(folder + "/" + name).parent_path());
     FuzzFolder::Write("data/" + name, content.data(), content.size());
   }
-  Play(folder + "/" + layout.opened);
+  use(folder + "/" + layout.opened);
   fs::remove_all(folder);
 }
 
@@ -132,6 +145,10 @@ void RunKittiTracking(const std::uint8_t* data, std::size_t size) {
   RunLayout(KittiTracking(), FuzzInput(data, size));
 }
 std::vector<FuzzBytes> KittiTrackingSeeds() { return SeedsOf(KittiTracking()); }
+
+void RunCheckFolder(const std::uint8_t* data, std::size_t size) {
+  RunLayout(Shibuya(), FuzzInput(data, size), Check);
+}
 
 /// The text files of all layouts, without the folder around them, which takes time to make.
 void RunTextFiles(const std::uint8_t* data, std::size_t size) {
@@ -164,12 +181,14 @@ std::vector<FuzzTarget> DatasetTargets() {
   return {{"shibuya", RunShibuya, ShibuyaSeeds, 4096},
           {"kitti_odometry", RunKittiOdometry, KittiOdometrySeeds, 4096},
           {"kitti_tracking", RunKittiTracking, KittiTrackingSeeds, 4096},
+          {"check_folder", RunCheckFolder, ShibuyaSeeds, 4096},
           {"text_files", RunTextFiles, TextSeeds, 4096}};
 }
 
 std::vector<FuzzTarget> FuzzTargets() {
   std::vector<FuzzTarget> all;
-  for (const auto& group : {NodeTargets(), MessageTargets(), FileTargets(), DatasetTargets()})
+  for (const auto& group :
+       {NodeTargets(), MessageTargets(), FileTargets(), DatasetTargets(), EvaluationTargets()})
     all.insert(all.end(), group.begin(), group.end());
   return all;
 }

@@ -1,11 +1,15 @@
+#include <nlohmann/json.hpp>
+
 #include "common/config/config_reader.h"
 #include "common/map/four_d_map.h"
 #include "common/map/map_export.h"
 #include "common/util/error.h"
+#include "common/util/json_file.h"
 #include "processes/node/channels.h"
 #include "processes/node/event_log.h"
 #include "processes/node/fifo_bus.h"
 #include "processes/node/log_source.h"
+#include "processes/tools/check_log.h"
 #include "tests/fuzz/fuzz_input.h"
 #include "tests/support/echo_node.h"
 #include "tests/support/sample_messages.h"
@@ -50,6 +54,17 @@ void RunLogBus(const std::uint8_t* data, std::size_t size) {
     bus.Finish();
   } catch (const InputError&) {
   }
+}
+
+/// As airdos-check does it.
+void RunCheckLog(const std::uint8_t* data, std::size_t size) {
+  const std::string path = FuzzFolder::Write("check.lcm", data, size);
+  FindingList findings;
+  try {
+    CheckLog(path, {2, 2}, &findings);
+  } catch (const InputError&) {
+  }
+  JsonText(findings.ToJson(path));
 }
 
 std::vector<FuzzBytes> LogSeeds() {
@@ -180,6 +195,7 @@ std::vector<FuzzBytes> ConfigSeeds() {
 std::vector<FuzzTarget> FileTargets() {
   return {{"event_log", RunEventLog, LogSeeds, 16384},
           {"log_bus", RunLogBus, LogSeeds, 16384},
+          {"check_log", RunCheckLog, LogSeeds, 16384},
           {"map_file", RunMapFile, MapFileSeeds, 8192},
           {"map_chunks", RunMapChunks, MapChunkSeeds, 8192},
           {"config", RunConfig, ConfigSeeds, 4096}};

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 
 #include "common/util/error.h"
+#include "common/util/json_file.h"
 #include "processes/tools/check_times.h"
 #include "tests/support/small_sequence.h"
 
@@ -351,6 +353,16 @@ TEST(FindingListTest, ManyOfAKindAreCounted) {
             "f0: warning: x [a]\nf1: warning: x [a]\nf2: warning: x [a]\n"
             "file:3: error: is bad: very [b]\nIN: note: 7 more like the last [a]\n"
             "IN: 1 errors, 10 warnings\n");
+}
+
+// Found by fuzzing: what a finding quotes may be any bytes.
+TEST(FindingListTest, BytesOfAFileDoNoHarm) {
+  FindingList findings;
+  findings.Fail("a", "f", "is '\x82\x1b[2J'");
+  std::ostringstream text;
+  findings.Print("IN", &text);
+  EXPECT_EQ(text.str(), "f: error: is '\x82?[2J' [a]\nIN: 1 errors, 0 warnings\n");
+  EXPECT_NE(JsonText(findings.ToJson("IN")).find("is '\xEF\xBF\xBD?[2J'"), std::string::npos);
 }
 
 TEST(SampleEvenlyTest, HasFirstAndLast) {

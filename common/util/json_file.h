@@ -1,0 +1,17 @@
+#ifndef AIRDOS_COMMON_UTIL_JSON_FILE_H_
+#define AIRDOS_COMMON_UTIL_JSON_FILE_H_
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace airdos {
+
+/// Indented JSON. Texts may come from anybody's files: what is no UTF-8 in them is replaced.
+std::string JsonText(const nlohmann::json& json);
+
+/// Writes it to a file. Throws InputError where that cannot be written.
+void WriteJson(const nlohmann::json& json, const std::string& path);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_UTIL_JSON_FILE_H_
