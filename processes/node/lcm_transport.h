@@ -27,10 +27,10 @@ bool StopRequested();
 /// have been minutes late), one thread, exceptions kept away from LCM's C code.
 class LcmTransport {
  public:
-  /// Size and receive time (us, wall clock) of a message as LCM's thread took it from the network.
-  /// Messages that wait for Poll(), of one channel or of all.
+  /// Messages that wait for Poll(), of one channel or of all; beyond it the newest are dropped.
   static constexpr int kMaxQueuedOfChannel = 1000;
   static constexpr int kMaxQueuedOfAll = 5000;
+  /// `receive_utime` (us, wall clock): when LCM's thread took the message from the network.
   using Handler =
       std::function<void(const void* data, std::size_t size, std::int64_t receive_utime)>;
 

@@ -93,7 +93,9 @@ void BusListener::OnMessage(const std::string& channel, const void* data, std::s
   ++num_messages_[channel];
   if (channel == channel::kCameraLeft) {
     const auto header = PeekHeader(data, size);
-    if (header) newest_image_ = std::max(newest_image_, header->seq);
+    if (!header) return;
+    newest_image_ = std::max(newest_image_, header->seq);
+    num_states_at_image_[{header->session, header->seq}] = states_.size();
   }
   if (IsOutputChannel(channel)) digests_.Add(channel, data, size);
   if (channel == channel::kStateEstimate) {
@@ -102,7 +104,12 @@ void BusListener::OnMessage(const std::string& channel, const void* data, std::s
     EXPECT_EQ(Validate(state), "");
     const bool has_pose = state.status != state_estimate_t::STATUS_INVALID;
     num_without_pose_ += has_pose ? 0 : 1;
-    if (has_pose) states_[{state.session, state.seq}] = state;
+    if (!has_pose) return;
+    const auto image = num_states_at_image_.find({state.session, state.seq});
+    if (image != num_states_at_image_.end()) {
+      max_estimates_behind_ = std::max(max_estimates_behind_, states_.size() - image->second);
+    }
+    states_[{state.session, state.seq}] = state;
   } else if (channel == channel::kHumanObservations) {
     human_observations_t people = {};
     ASSERT_TRUE(Decode(data, size, &people));

@@ -56,6 +56,9 @@ class BusListener {
   std::int64_t num_messages(const std::string& channel) const;
   /// Newest image that was published.
   std::int64_t newest_image() const { return newest_image_; }
+  /// Most estimates of other images that were heard between an image and its own estimate: how many
+  /// frames wait in the chain, whatever time they take.
+  std::size_t max_estimates_behind() const { return max_estimates_behind_; }
   /// Of the output channels, one line each: as FormatDigests() of a log.
   std::string digests() const;
   /// People in a frame's HUMAN_OBSERVATIONS; -1 if it was not heard.
@@ -72,6 +75,8 @@ class BusListener {
   std::map<std::string, std::set<FrameKey>> done_;
   std::map<std::string, std::int64_t> num_messages_;
   std::int64_t newest_image_ = -1;
+  std::map<FrameKey, std::size_t> num_states_at_image_;
+  std::size_t max_estimates_behind_ = 0;
   ChannelDigests digests_;
 };
 

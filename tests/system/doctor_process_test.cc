@@ -17,6 +17,7 @@
 #include "processes/node/lcm_transport.h"
 #include "processes/node/types_fingerprint.h"
 #include "tests/support/child_process.h"
+#include "tests/support/live_chain.h"
 #include "tests/support/private_network.h"
 #include "tests/support/sample_messages.h"
 
@@ -61,7 +62,10 @@ class DoctorProcessTest : public testing::Test {
   }
   int RunDoctor(std::vector<std::string> arguments = {},
                 const std::function<void()>& meanwhile = {}) {
-    arguments.insert(arguments.end(), {"--listen-s", "0.3", "--run-dir", folder_.string()});
+    if (std::find(arguments.begin(), arguments.end(), "--listen-s") == arguments.end()) {
+      arguments.insert(arguments.end(), {"--listen-s", "0.3"});
+    }
+    arguments.insert(arguments.end(), {"--run-dir", folder_.string()});
     return Run("airdos-doctor", arguments, meanwhile);
   }
   void ExpectLine(const std::string& text) {
@@ -162,6 +166,27 @@ TEST_F(DoctorProcessTest, ARunOfOtherTypes) {
              TypesFingerprint());
   ExpectLine("WARN bus.port: port 7667 is in use: STATUS");
   ExpectLine(" bus.round_trip: 0 of ");
+}
+
+// Beside a run it names each process, finds them to be of one build, and does not disturb.
+TEST_F(DoctorProcessTest, BesideARunItNamesEachProcess) {
+  EnterNetwork();
+  if (IsSkipped()) return;
+  BusListener listener(kUrl);
+  LiveChain chain(folder_.string() + "/", kUrl);
+  ASSERT_NO_FATAL_FAILURE(chain.StartNodes());
+  WriteEvents(SampleEvents(0, 19), (folder_ / "input.lcm").string());
+  ChildProcess* player = chain.StartPlayer((folder_ / "input.lcm").string());
+  // Whoever works may be late with STATUS, once a second.
+  const int code = RunDoctor({"--listen-s", "5"}, [&] { listener.Hear(); });
+  EXPECT_EQ(code, 0) << output_ << errors_;
+  for (const std::string& program : LiveChain::NodePrograms()) ExpectLine(program + " (");
+  ExpectLine("WARN bus.port: port 7667 is in use: ");
+  EXPECT_EQ(output_.find("bus.types"), std::string::npos) << output_;
+  EXPECT_TRUE(listener.HearUntil([&] { return player->HasEnded(); }, LiveChain::kRun_s));
+  EXPECT_EQ(player->Wait(0), 0) << player->Errors();
+  chain.StopNodes();
+  EXPECT_EQ(listener.states().size(), 20u);
 }
 
 TEST_F(DoctorProcessTest, BadArgumentsAreOneLineAndExit2) {

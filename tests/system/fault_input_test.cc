@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cstdio>
+#include <map>
 #include <random>
 #include <set>
 #include <utility>
@@ -116,6 +118,40 @@ TEST_F(FaultInputTest, OfImagesOutOfOrderTheOvertakenOneIsLost) {
   EXPECT_EQ(counters.num_duplicate, 1);
   EXPECT_LT(Error_m(kLast), kGood_m);
   ExpectWhatReplaySays(folder_ + "input.lcm");
+}
+
+// Somebody else says thousands of broken messages on the camera's channels meanwhile. Lost:
+// nothing; each of them is rejected and counted.
+TEST_F(FaultInputTest, NonsenseInBetweenIsRejectedAndChangesNothing) {
+  constexpr std::size_t kMostNonsense = 20000;
+  const std::vector<LogEvent> events = SampleEvents(0, kLast);
+  chain_->SetNodeArguments({"--deadline-s", "200"});
+  ASSERT_NO_FATAL_FAILURE(chain_->StartNodes());
+  chain_->StartPlayer(Write(events));
+  LcmTransport hostile(kUrl);
+  std::map<std::string, std::int64_t> num_said;
+  std::size_t next = 0;
+  const auto say_nonsense = [&] {
+    if (next >= kMostNonsense) return false;
+    const LogEvent& whole = events[next++ % events.size()];
+    const std::size_t broken_size = std::min<std::size_t>(1000, whole.payload.size() - 1);
+    ++num_said[whole.channel];
+    return !hostile.Publish(whole.channel, whole.payload.data(), broken_size);
+  };
+  const BusListener::FrameKey last = {kSession, kLast};
+  EXPECT_TRUE(listener_->HearUntil(
+      [&] { return say_nonsense() || listener_->IsDone("airdos-map-recorder", last); },
+      LiveChain::kRun_s))
+      << chain_->AllErrors();
+  StopAndHear();
+  ExpectWhatReplaySays(folder_ + "input.lcm");
+  for (const std::string channel : {channel::kCameraLeft, channel::kCameraRight}) {
+    for (const std::string program : {"airdos-frontend", "airdos-human-tracker"}) {
+      const std::int64_t num_rejected = Counters(program, channel).num_rejected;
+      EXPECT_GT(num_rejected, 0) << program;
+      EXPECT_LE(num_rejected, num_said[channel]) << program << ": whole messages were rejected";
+    }
+  }
 }
 
 // The right camera is silent for 2 s (20 frames). Lost: new landmarks; the known ones are tracked

@@ -189,6 +189,54 @@ TEST_F(FaultTest, ASlowChainSkipsAndCountsAndKeepsUp) {
   EXPECT_GT(listener_->states().count({kSession, kLast}), 0u) << "the newest image has its pose";
 }
 
+struct SlowOptimizer {
+  std::string name;
+  std::vector<std::string> frontend_arguments;
+  std::string who_skips;
+};
+
+class SlowOptimizerTest : public FaultTest, public testing::WithParamInterface<SlowOptimizer> {};
+
+// The optimizer alone is too slow for the camera (10 Hz, realtime pace): it is told to iterate far
+// beyond need. The frontend needs its answer of two frames ago, and so skips with it; without that
+// feedback the optimizer skips alone. Lost: the skipped frames, each of them counted. Not lost: the
+// newest one; few frames wait in the chain, so latency and memory are those of a few.
+TEST_P(SlowOptimizerTest, FramesAreSkippedAndFewWait) {
+  constexpr std::int64_t kLast = 39;
+  chain_->SetNodeArguments({"--pace", "realtime", "--deadline-s", "20"});
+  for (const std::string& program : LiveChain::NodePrograms()) {
+    std::vector<std::string> arguments;
+    if (program == "airdos-frontend") arguments = GetParam().frontend_arguments;
+    if (program == "airdos-optimizer")
+      arguments = {"--set", "solver.method=ceres",
+                   "--set", "solver.max_iterations=200",
+                   "--set", "solver.function_tolerance=1e-16"};
+    ASSERT_NO_FATAL_FAILURE(chain_->StartNode(program, arguments));
+  }
+  chain_->StartPlayer(Write(SampleEvents(0, kLast)), {"--pace", "realtime"});
+  HearTheEnd(kLast);
+  StopAndHear();
+  for (const std::string& program : LiveChain::NodePrograms()) {
+    const process_status_t& status = listener_->statuses().at(program);
+    EXPECT_EQ(status.waiting_for, "") << program << " still has frames to do";
+    EXPECT_LT(status.memory_mb, 500) << program;
+    std::printf("%s: %d frames, %d skipped, p50 %.0f ms\n", program.c_str(),
+                static_cast<int>(status.num_frames_done),
+                static_cast<int>(status.num_frames_skipped), status.latency_p50_ms);
+  }
+  const process_status_t& skipper = listener_->statuses().at(GetParam().who_skips);
+  EXPECT_GT(skipper.num_frames_skipped, 0);
+  EXPECT_EQ(skipper.num_frames_done + skipper.num_frames_skipped, kLast + 1);
+  EXPECT_GT(listener_->states().count({kSession, kLast}), 0u) << "the newest image has its pose";
+  EXPECT_LE(listener_->max_estimates_behind(), 4u);
+}
+INSTANTIATE_TEST_SUITE_P(Feedback, SlowOptimizerTest,
+                         testing::Values(SlowOptimizer{"WithLag", {}, "airdos-frontend"},
+                                         SlowOptimizer{"Without",
+                                                       {"--set", "feedback.lag_frames=0"},
+                                                       "airdos-optimizer"}),
+                         [](const auto& instance) { return instance.param.name; });
+
 // Two runs on one machine, on two ports. Lost: nothing; neither hears the other.
 TEST_F(FaultTest, TwoRunsOnTwoPortsDoNotHearEachOther) {
   constexpr std::int64_t kLast = 9;

@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "processes/node/lcm_transport.h"
+#include "tests/support/private_network.h"
+
+// What a peer that sends faster than we work costs: as many messages as the queue holds, no more.
+
+namespace airdos {
+namespace {
+
+const std::string kUrl = "udpm://239.255.76.67:7667?ttl=0";
+constexpr int kOneMore = 1;  // LCM drops a message where more than the capacity wait
+
+/// Sends numbered messages while `busy`, which has subscribed, does not poll. Somebody else does,
+/// so that nothing is lost before the queues.
+void Flood(int num_messages) {
+  LcmTransport witness(kUrl);
+  int num_heard = 0;
+  witness.Subscribe("FLOOD", [&](const void*, std::size_t, std::int64_t) { ++num_heard; });
+  for (int number = 0; number < num_messages; ++number) {
+    ASSERT_TRUE(witness.Publish("FLOOD", &number, sizeof(number)));
+    constexpr int kPoll_ms = 1000;
+    while (num_heard <= number && witness.Poll(kPoll_ms)) {
+    }
+  }
+  ASSERT_EQ(num_heard, num_messages);
+}
+
+void PollUntilQuiet(LcmTransport* busy) {
+  constexpr int kQuiet_ms = 200;
+  while (busy->Poll(kQuiet_ms)) {
+  }
+}
+
+class TransportTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string obstacle = EnterPrivateNetwork(true);
+    if (!obstacle.empty()) GTEST_SKIP() << obstacle;
+  }
+};
+
+// Beyond the bound the newest are dropped: their numbers are missing afterwards.
+TEST_F(TransportTest, TheQueueOfAChannelIsBounded) {
+  constexpr int kMax = LcmTransport::kMaxQueuedOfChannel;
+  LcmTransport busy(kUrl);
+  std::vector<int> numbers;
+  busy.Subscribe("FLOOD", [&](const void* data, std::size_t size, std::int64_t) {
+    numbers.push_back(-1);
+    ASSERT_EQ(size, sizeof(int));
+    std::memcpy(&numbers.back(), data, size);
+  });
+  ASSERT_NO_FATAL_FAILURE(Flood(kMax + 500));
+  PollUntilQuiet(&busy);
+  ASSERT_EQ(numbers.size(), static_cast<std::size_t>(kMax + kOneMore));
+  EXPECT_EQ(numbers.front(), 0);
+  EXPECT_EQ(numbers.back(), kMax);
+}
+
+TEST_F(TransportTest, TheQueueOfARecorderIsBounded) {
+  LcmTransport busy(kUrl);
+  int num_heard = 0;
+  busy.SubscribeAll(
+      [&](const std::string&, const void*, std::size_t, std::int64_t) { ++num_heard; });
+  ASSERT_NO_FATAL_FAILURE(Flood(LcmTransport::kMaxQueuedOfAll + 500));
+  PollUntilQuiet(&busy);
+  EXPECT_EQ(num_heard, LcmTransport::kMaxQueuedOfAll + kOneMore);
+}
+
+}  // namespace
+}  // namespace airdos
