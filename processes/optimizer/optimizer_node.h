@@ -21,7 +21,8 @@ struct OptimizerInputs {
 /// STATIC_FEATURES and, with `people: on`, HUMAN_OBSERVATIONS in; STATE_ESTIMATE and MAP_UPDATE
 /// (one or more parts) out, for each frame once. A frame whose inputs never came is predicted; in
 /// frames before the first STATIC_FEATURES nothing is known (STATUS_INVALID). W is where the front
-/// end's first message has it, so that a process that was started again goes on in the same W.
+/// end's first message has it, so that a process that was started again goes on in the same W. So
+/// it does after an estimate that is beyond all bounds of its message, which is not published.
 class OptimizerNode final : public FrameNode<OptimizerInputs> {
  public:
   explicit OptimizerNode(const OptimizerOptions& options);
@@ -29,6 +30,7 @@ class OptimizerNode final : public FrameNode<OptimizerInputs> {
  private:
   void StartSession(const Header& header) override;
   void ProcessFrame(const Header& header, OptimizerInputs inputs) override;
+  FrameResult Adjust(const Header& header, const OptimizerInputs& inputs);
 
   OptimizerOptions options_;
   std::unique_ptr<SlidingWindowOptimizer> window_;  // of the session; null before its first frame

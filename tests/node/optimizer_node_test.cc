@@ -308,6 +308,29 @@ TEST(OptimizerNodeTest, StartedAgainItGoesOnWhereTheFrontEndKnowsTheWorld) {
   EXPECT_EQ(Take<map_update_t>(output, channel::kMapUpdate).size(), estimates.size());
 }
 
+// Found by fuzzing: two poses within the bounds of a message, and the way between them beyond.
+TEST(OptimizerNodeTest, WhatIsBeyondAllBoundsIsNotSaid) {
+  const SyntheticScene scene = Scene(4);
+  const std::unique_ptr<Node> node = MakeNode("off");
+  std::vector<Envelope> output;
+  SendCalibration(scene, node.get());
+  for (FrameInput input : scene.frames) {
+    const std::int64_t k = input.id.value;
+    input.features.clear();
+    input.T_O_C->translation.x() = k == 0 ? -9e6 : 9e6;
+    input.T_W_C = Se3();
+    Send(channel::kStaticFeatures, Features(input), node.get());
+    Drain(node.get(), &output);
+  }
+  const auto estimates = Take<state_estimate_t>(output, channel::kStateEstimate);
+  ASSERT_EQ(estimates.size(), 4U);
+  EXPECT_EQ(estimates[0].status, +state_estimate_t::STATUS_FIRST_FRAME);
+  EXPECT_EQ(estimates[1].status, +state_estimate_t::STATUS_INVALID);
+  EXPECT_EQ(estimates[2].status, +state_estimate_t::STATUS_FIRST_FRAME) << "where W was last";
+  for (const state_estimate_t& estimate : estimates) EXPECT_EQ(Validate(estimate), "");
+  EXPECT_EQ(Take<map_update_t>(output, channel::kMapUpdate).size(), 4U);
+}
+
 TEST(OptimizerNodeTest, EmptyFramesDoNotStopIt) {
   SyntheticScene scene = Scene(5);
   for (FrameInput& input : scene.frames) {

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ostream>
 #include <random>
 
 #include "common/map/four_d_map.h"
@@ -194,6 +195,9 @@ struct SlowOptimizer {
   std::vector<std::string> frontend_arguments;
   std::string who_skips;
 };
+
+/// What ctest shows.
+void PrintTo(const SlowOptimizer& slow, std::ostream* stream) { *stream << slow.name; }
 
 class SlowOptimizerTest : public FaultTest, public testing::WithParamInterface<SlowOptimizer> {};
 
