@@ -210,13 +210,23 @@ std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
                          People(inputs)};
 }
 
-void FrontendNode::ProcessFrame(const Header& header, FrontendInputs inputs) {
-  ApplyUpdates();
+static_features_t FrontendNode::Track(const Header& header, const FrontendInputs& inputs) {
   const std::optional<StereoImagePair> images = Images(header, inputs);
   const double time_s = static_cast<double>(header.utime - first_.utime) * 1e-6;
-  const OdometryFrame frame = images ? odometry_->Process(camera(), *images)
-                                     : odometry_->Coast(FrameId{header.seq}, time_s);
-  Publish(channel::kStaticFeatures, ToMessage(header, first_.seq, frame));
+  return ToMessage(header, first_.seq,
+                   images ? odometry_->Process(camera(), *images)
+                          : odometry_->Coast(FrameId{header.seq}, time_s));
+}
+
+void FrontendNode::ProcessFrame(const Header& header, FrontendInputs inputs) {
+  ApplyUpdates();
+  static_features_t message = Track(header, inputs);
+  if (!Validate(message).empty()) {
+    // Blind for so long that the motion before leads beyond all bounds: begin as after a restart.
+    StartSession(header);
+    message = Track(header, inputs);
+  }
+  Publish(channel::kStaticFeatures, message);
   published_.push_back(header.seq);
   if (published_.size() > static_cast<std::size_t>(std::max(options_.feedback_lag, 1))) {
     published_.erase(published_.begin());

@@ -56,6 +56,7 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   std::vector<std::string> MissingFeedback(const Header& header) const override;
   void StartSession(const Header& header) override;
   void ProcessFrame(const Header& header, FrontendInputs inputs) override;
+  static_features_t Track(const Header& header, const FrontendInputs& inputs);
 
  private:
   std::string ReceiveUpdate(map_update_t&& message);

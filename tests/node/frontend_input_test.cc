@@ -182,5 +182,28 @@ TEST(FrontendNode, PngAndRawGiveTheSameBytes) {
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(Encode(a[i]), Encode(b[i]));
 }
 
+// Blind, and each step in time nine times as long as the one before: the motion of before leads to
+// other stars.
+TEST(FrontendNode, WhatIsBeyondAllBoundsIsNotSaid) {
+  FrontendNode node(WithoutFeedback());
+  Send(channel::kCalibration, Calibration(), &node);
+  for (int k = 0; k < 4; ++k) SendFrame(k, &node);
+  EXPECT_EQ(StepAll(&node).size(), 4u);
+  std::int64_t utime = Left(3).utime;
+  std::int64_t step_us = utime - Left(2).utime;
+  for (int k = 4; k < 16; ++k) {
+    auto humans = NoHumans(k);
+    utime += step_us *= 9;
+    humans.utime = utime;
+    Send(channel::kHumanObservations, humans, &node);
+    ASSERT_TRUE(node.CompleteOldest());
+  }
+  const std::vector<static_features_t> output = Take(&node);  // valid, all of them
+  ASSERT_EQ(output.size(), 12u);
+  EXPECT_EQ(output[0].tracking_state, kCoasting);
+  EXPECT_EQ(output[0].odometry_start_seq, 0);
+  EXPECT_GT(output.back().odometry_start_seq, 4);
+}
+
 }  // namespace
 }  // namespace airdos
