@@ -12,8 +12,8 @@
 #   --help            this text
 #
 # Memory growth: the largest of the second half over the largest of the second quarter; the first quarter fills the maps.
-# Exit 1 if more was lost, or a process grew by more than 10 % (30 % in less than 10 minutes: the front end's map takes 200 s to
-# fill). On a machine that is fast enough and has nothing else to do nothing is lost.
+# Exit 1 if more was lost, or a process grew by more than 10 % (30 % in less than three minutes: the front end's map takes its time
+# to fill). On a machine that is fast enough and has nothing else to do nothing is lost.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -47,7 +47,7 @@ data=${data:-$AIRDOS_ROOT/logs/road_crossing06.lcm}
 [[ $minutes =~ ^[1-9][0-9]*$ ]] || die_usage "--minutes: not a whole number above 0: '$minutes'"
 [[ $max_lost =~ ^(100|[0-9]{1,2})$ ]] || die_usage "--max-lost: not a whole number of 0 to 100: '$max_lost'"
 need_program airdos-stereo-player
-max_growth_percent=$((minutes < 10 ? 30 : 10))
+max_growth_percent=$((minutes < 3 ? 30 : 10))
 
 # More rounds than there is time for, of at least 1 s each; the run is ended when the time is over.
 loops=$((minutes * 60))
