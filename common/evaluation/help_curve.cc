@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/util/error.h"
+#include "common/util/json_file.h"
 
 namespace airdos {
 namespace {
@@ -33,7 +34,8 @@ CappedRun ParseRun(const json& object) {
   CappedRun run;
   run.sequence = object.at("sequence");
   run.mode = object.at("mode");
-  if (!object.at("max_observations").is_null()) run.cap = object["max_observations"].get<int>();
+  const json& cap = object.at("max_observations");
+  if (!cap.is_null()) run.cap = static_cast<int>(WholeNumber(cap, 0, 1000000000));
   const double frames = object.at("frames");
   if (!(frames > 0)) throw InputError("key 'frames': must be above 0");
   run.figures = {object.at("ate_m"), object.at("rpe_median_m"), object.at("rpe_rmse_m"),

@@ -8,18 +8,21 @@
 
 #include "common/human/skeleton.h"
 #include "common/util/error.h"
+#include "common/util/json_file.h"
 
 namespace airdos {
 namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMaxUnpackedBytes = 256u << 20;  // of some 7,000 frames
+constexpr std::int64_t kMaxId = std::int64_t{1} << 53;  // of the whole numbers of JSON
+constexpr std::size_t kMaxUnpackedBytes = 256u << 20;   // of some 7,000 frames
 
 Joints ParseJoints(const json& object) {
   Joints joints;
   for (const auto& [key, place] : object.items()) {
     const int id = std::stoi(key);
+    if (id < 0) throw InputError("'" + key + "' is no joint");
     if (id >= kNumJoints) continue;  // of the face
     joints[id] = Eigen::Vector3d(place.at(0).get<double>(), place.at(1).get<double>(),
                                  place.at(2).get<double>());
@@ -50,7 +53,7 @@ std::string ReadUnpacked(const std::string& path) {
 std::optional<int> CountVisible(const json& human, const char* key) {
   if (!human.contains(key)) return std::nullopt;
   int count = 0;
-  for (const json& visibility : human.at(key)) count += visibility.get<int>() > 0 ? 1 : 0;
+  for (const json& visibility : human.at(key)) count += visibility.get<double>() > 0 ? 1 : 0;
   return count;
 }
 
@@ -66,11 +69,13 @@ std::vector<PersonState> ReadPeople(const std::string& path) {
       const json object = json::parse(line);
       PersonState state;
       state.time_s = 1e-6 * object.at("utime").get<double>();
-      state.track = object.at("track");
+      state.track = WholeNumber(object.at("track"), -kMaxId, kMaxId);
       state.joints_W = ParseJoints(object.at("joints"));
       state.measured_W = ParseJoints(object.at("measured"));
       for (const auto& [key, length_m] : object.at("segment_lengths_m").items()) {
-        state.segment_length_m[std::stoi(key)] = length_m;
+        const int segment = std::stoi(key);
+        if (segment < 0 || segment >= kNumSegments) throw InputError("'" + key + "' is no segment");
+        state.segment_length_m[segment] = length_m;
       }
       states.push_back(std::move(state));
     } catch (const std::exception& error) {
@@ -88,7 +93,7 @@ std::vector<TruePeople> ReadTruePeople(const std::string& path) {
       TruePeople frame;
       frame.time_s = object.at("t");
       for (const json& human : object.at("humans")) {
-        TruePersonState& person = frame.people[human.at("id")];
+        TruePersonState& person = frame.people[WholeNumber(human.at("id"), -kMaxId, kMaxId)];
         person.joints = ParseJoints(human.at("joints_w"));
         person.num_visible_left = CountVisible(human, "vis0");
         person.num_visible_right = CountVisible(human, "vis1");

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "common/util/error.h"
+#include "common/util/json_file.h"
 
 namespace airdos {
 namespace {
@@ -26,7 +27,7 @@ std::optional<double> Optional(const json& object, const char* key) {
 ChainSpeed ParseChain(const json& object) {
   ChainSpeed chain;
   chain.sequence = object.at("sequence");
-  chain.num_frames = object.at("num_frames");
+  chain.num_frames = static_cast<int>(WholeNumber(object.at("num_frames"), 0, 1000000000));
   for (const auto& [name, figures] : object.at("processes").items()) {
     chain.processes[name] = {figures.at("p50_ms"), figures.at("p99_ms"),
                              Optional(figures, "peak_memory_mb")};

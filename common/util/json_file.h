@@ -1,10 +1,15 @@
 #ifndef AIRDOS_COMMON_UTIL_JSON_FILE_H_
 #define AIRDOS_COMMON_UTIL_JSON_FILE_H_
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace airdos {
+
+/// A whole number from `low` to `high`, also where it is written as 3.0. Throws InputError where it
+/// is another one or none: to convert a number that does not fit is undefined.
+std::int64_t WholeNumber(const nlohmann::json& value, std::int64_t low, std::int64_t high);
 
 /// Indented JSON. Texts may come from anybody's files: what is no UTF-8 in them is replaced.
 std::string JsonText(const nlohmann::json& json);

@@ -60,22 +60,45 @@ std::vector<FuzzBytes> TrajectorySeeds() {
 }
 
 // --- people
-constexpr char kPeople[] =
-    R"({"utime":0,"track":3,"joints":{"1":[0,0,4],"8":[0.1,0.5,4]},"measured":{"1":[0,0,4.1]},)"
-    R"("segment_lengths_m":{"4":0.2}})"
-    "\n"
-    R"({"utime":100000,"track":3,"joints":{"1":[0,0,3.9]},"measured":{},"segment_lengths_m":{}})"
-    "\n";
-constexpr char kTruePeople[] =
-    R"([{"t":0,"humans":[{"id":1,"joints_w":{"1":[0,0,4],"8":[0.1,0.5,4],"17":[0,0,0]},)"
-    R"("vis0":[1,1,0],"vis1":[2,0,1]}]},{"t":0.1,"humans":[]}])";
+constexpr int kPeopleFrames = 12;  // lengths count after ten
+
+std::string Time(int frame) { return std::to_string(0.1 * frame); }
+
+std::string Cameras() {
+  std::string rows;
+  for (int frame = 0; frame < kPeopleFrames; ++frame) rows += Time(frame) + " 0 0 0 0 0 0 1\n";
+  return rows;
+}
+
+std::string People() {
+  std::string rows;
+  for (int frame = 0; frame < kPeopleFrames; ++frame) {
+    rows += "{\"utime\":" + std::to_string(100000 * frame) +
+            R"(,"track":3,"joints":{"1":[0,0,4],"8":[0,1,4]},"measured":{"1":[0,0,4.1]},)"
+            R"("segment_lengths_m":{"4":0.2}})"
+            "\n";
+  }
+  return rows;
+}
+
+std::string TruePeopleText() {
+  std::string rows;
+  for (int frame = 0; frame < kPeopleFrames; ++frame) {
+    rows += (rows.empty() ? "[" : ",") + ("{\"t\":" + Time(frame)) +
+            R"(,"humans":[{"id":1,"joints_w":{"1":[0,0,4],"8":[0,1,4],"17":[0,0,0]},)"
+            R"("vis0":[1,1,0],"vis1":[2,0,1]}]})";
+  }
+  return rows + "]";
+}
 
 void RunPeople(const std::uint8_t* data, std::size_t size) {
   FuzzInput input(data, size);
-  input.U8();
   const std::string people_path = WriteBlock("people.jsonl", &input);
   const std::string truth_path = WriteBlock("joints_gt.json", &input);
-  static const std::string cameras_path = FuzzFolder::Write("cameras.txt", kTum, sizeof(kTum) - 1);
+  static const std::string cameras_path = [] {
+    const std::string text = Cameras();
+    return FuzzFolder::Write("cameras.txt", text.data(), text.size());
+  }();
   try {
     const Trajectory cameras = ReadTrajectory(cameras_path);
     const PeopleReport report = EvaluatePeople(ReadPeople(people_path), ReadTruePeople(truth_path),
@@ -86,7 +109,12 @@ void RunPeople(const std::uint8_t* data, std::size_t size) {
   }
 }
 
-std::vector<FuzzBytes> PeopleSeeds() { return {Blocks(false, {kPeople, kTruePeople})}; }
+std::vector<FuzzBytes> PeopleSeeds() {
+  FuzzOutput seed;
+  seed.Block(People());
+  seed.Block(TruePeopleText());
+  return {seed.Take()};
+}
 
 // --- figures of benchmarks
 constexpr char kRuns[] =
@@ -143,7 +171,7 @@ std::vector<FuzzBytes> SpeedSeeds() { return {Blocks(true, {kChains, kSolves})};
 
 std::vector<FuzzTarget> EvaluationTargets() {
   return {{"trajectory", RunTrajectory, TrajectorySeeds, 4096},
-          {"people", RunPeople, PeopleSeeds, 4096},
+          {"people", RunPeople, PeopleSeeds, 8192},
           {"help_curve", RunHelpCurve, HelpCurveSeeds, 4096},
           {"speed", RunSpeed, SpeedSeeds, 4096}};
 }

@@ -124,6 +124,9 @@ TEST(HelpCurve, ReadsRunsAndNamesTheLine) {
   EXPECT_EQ(runs[0].figures, (RunFigures{1, 2, 3, 10}));
   std::ofstream(path) << R"({"sequence": "a", "mode": "on"})";
   EXPECT_NE(MessageOf([&] { ReadCappedRuns(path); }).find(path + ":1: "), std::string::npos);
+  // Found by fuzzing: a number that no int holds.
+  std::ofstream(path) << R"({"sequence": "a", "mode": "on", "max_observations": 3e98, )" << row;
+  EXPECT_NE(MessageOf([&] { ReadCappedRuns(path); }).find("is no whole number"), std::string::npos);
   std::filesystem::remove(path);
   EXPECT_EQ(MessageOf([&] { ReadCappedRuns(path); }), path + ": cannot be read");
 }

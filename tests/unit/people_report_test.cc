@@ -212,6 +212,17 @@ TEST(PeopleFiles, AreReadAndErrorsNameTheLine) {
   EXPECT_EQ(truth[0].people.at(4).joints.at(0), Eigen::Vector3d(1, 2, 3));
   std::ofstream(path) << "[{}]";
   EXPECT_NE(message([&] { ReadTruePeople(path); }).find(path + ": "), std::string::npos);
+  // Ids that are none, which somebody may take for an index later on.
+  const auto with = [&](const std::string& old_text, const std::string& new_text) {
+    std::string changed = state;
+    changed.replace(changed.find(old_text), old_text.size(), new_text);
+    std::ofstream(path) << changed << "\n";
+    return message([&] { ReadPeople(path); });
+  };
+  EXPECT_NE(with("\"1\"", "\"-1\"").find("'-1' is no joint"), std::string::npos);
+  EXPECT_NE(with("\"13\"", "\"14\"").find("'14' is no segment"), std::string::npos);
+  EXPECT_NE(with("3", "1e99").find("'1e+99' is no whole number"), std::string::npos);
+  EXPECT_EQ(with("3", "3.0"), "no error");
   std::filesystem::remove(path);
 }
 
