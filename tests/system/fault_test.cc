@@ -228,10 +228,11 @@ TEST_P(SlowOptimizerTest, FramesAreSkippedAndFewWait) {
                 static_cast<int>(status.num_frames_done),
                 static_cast<int>(status.num_frames_skipped), status.latency_p50_ms);
   }
-  const process_status_t& skipper = listener_->statuses().at(GetParam().who_skips);
-  EXPECT_GT(skipper.num_frames_skipped, 0);
-  EXPECT_EQ(skipper.num_frames_done + skipper.num_frames_skipped, kLast + 1);
+  EXPECT_GT(listener_->statuses().at(GetParam().who_skips).num_frames_skipped, 0);
+  const process_status_t& frontend = listener_->statuses().at("airdos-frontend");
+  EXPECT_EQ(frontend.num_frames_done + frontend.num_frames_skipped, kLast + 1);
   EXPECT_GT(listener_->states().count({kSession, kLast}), 0u) << "the newest image has its pose";
+  std::printf("most estimates behind: %d\n", static_cast<int>(listener_->max_estimates_behind()));
   EXPECT_LE(listener_->max_estimates_behind(), 4u);
 }
 INSTANTIATE_TEST_SUITE_P(Feedback, SlowOptimizerTest,
