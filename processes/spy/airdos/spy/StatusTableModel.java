@@ -20,6 +20,9 @@ final class StatusTableModel extends AbstractTableModel {
     "last error"
   };
 
+  /** Digits of a fingerprint: enough to tell two apart. */
+  private static final int SHOWN_OF_TYPES = 8;
+
   private static final class Row {
     process_status_t status;
     long heardAtMs;
@@ -103,8 +106,8 @@ final class StatusTableModel extends AbstractTableModel {
         return tenths(status.memory_mb);
       case 11:
         return status.version;
-      case 12: // the same text in each row, unless somebody was built with other message types
-        return status.types_fingerprint;
+      case 12: // the same in each row, unless somebody was built with other message types
+        return beginning(status.types_fingerprint);
       case 13:
         return status.waiting_for;
       default:
@@ -122,6 +125,10 @@ final class StatusTableModel extends AbstractTableModel {
     long sum = 0;
     for (channel_status_t channel : status.channels) sum += channel.num_rejected;
     return sum;
+  }
+
+  private static String beginning(String text) {
+    return text.length() <= SHOWN_OF_TYPES ? text : text.substring(0, SHOWN_OF_TYPES);
   }
 
   private static String tenths(double value) {
