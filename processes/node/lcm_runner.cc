@@ -29,7 +29,6 @@ double NumDeadlines(const std::string& channel) {
 
 constexpr int kPollTimeout_ms = 50;
 constexpr double kStatusPeriod_s = 1.0;
-constexpr int kMaxDrained = 1000;  // messages that are taken in at once
 
 channel_status_t StatusOf(const std::string& channel, const ChannelCounters& counters) {
   channel_status_t status = {};

@@ -31,6 +31,9 @@ struct LcmRunnerOptions {
 /// out, says STATUS once a second. All knowledge of clocks and of the network is here.
 class LcmRunner {
  public:
+  /// Messages that are taken in at once, in realtime pace, before the next frame is worked on.
+  static constexpr int kMaxDrained = 1000;
+
   /// Neither is owned. `log` takes what people are to read, one line each.
   LcmRunner(Node* node, LcmTransport* transport, const LcmRunnerOptions& options,
             std::ostream* log);

@@ -1,11 +1,18 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <csignal>
 #include <cstdint>
 #include <cstring>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "airdos/frame_done_t.hpp"
+#include "processes/node/lcm_runner.h"
 #include "processes/node/lcm_transport.h"
+#include "processes/node/node.h"
 #include "tests/support/private_network.h"
 
 // What a peer that sends faster than we work costs: as many messages as the queue holds, no more.
@@ -71,6 +78,63 @@ TEST_F(TransportTest, TheQueueOfARecorderIsBounded) {
   ASSERT_NO_FATAL_FAILURE(Flood(LcmTransport::kMaxQueuedOfAll + kTooMany));
   PollUntilQuiet(&busy);
   EXPECT_EQ(num_heard, LcmTransport::kMaxQueuedOfAll + kOneMore);
+}
+
+/// A node that answers each message with two more: whoever takes in all there is never ends.
+class FloodedNode : public Node {
+ public:
+  static constexpr int kMost = 20000;
+
+  explicit FloodedNode(LcmTransport* sender) : Node("flooded"), sender_(sender) {
+    Subscribe<frame_done_t>("FLOOD", [this](frame_done_t&&) {
+      ++num_since_work_;
+      if (++num_received_ >= kMost) std::raise(SIGTERM);
+      SendTwo();
+      return std::string();
+    });
+  }
+  void SendTwo() {
+    frame_done_t message = {};
+    message.process = "anybody";
+    const std::vector<std::uint8_t> bytes = Encode(message);
+    for (int i = 0; i < 2; ++i) sender_->Publish("FLOOD", bytes.data(), bytes.size());
+  }
+  bool Step() override {
+    if (num_since_work_ == 0) SendTwo();  // the flood has not begun, or all of it was lost
+    most_between_work_ = std::max(most_between_work_, std::exchange(num_since_work_, 0));
+    return false;
+  }
+  bool CompleteOldest() override { return false; }
+  void SkipToNewest() override {}
+  std::string waiting_for() const override { return ""; }
+  std::size_t num_pending() const override { return 0; }
+
+  int num_received() const { return num_received_; }
+  int most_between_work() const { return most_between_work_; }
+
+ private:
+  LcmTransport* sender_;
+  int num_received_ = 0;
+  int num_since_work_ = 0;
+  int most_between_work_ = 0;
+};
+
+// The last one: from SIGTERM on nothing runs.
+TEST_F(TransportTest, AFloodDoesNotKeepAProcessFromItsWork) {
+  InstallStopSignals();
+  LcmTransport sender(kUrl);
+  LcmTransport transport(kUrl);
+  FloodedNode node(&sender);
+  LcmRunnerOptions options;
+  options.process = "flooded";
+  options.pace = LcmRunnerOptions::Pace::kRealtime;
+  std::ostringstream log;
+  LcmRunner runner(&node, &transport, options, &log);
+  runner.Start();
+  runner.Run();
+  EXPECT_GE(node.num_received(), FloodedNode::kMost);
+  EXPECT_GT(node.most_between_work(), 0);
+  EXPECT_LE(node.most_between_work(), LcmRunner::kMaxDrained + kOneMore);
 }
 
 }  // namespace
