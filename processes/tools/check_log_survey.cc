@@ -12,8 +12,8 @@
 namespace airdos {
 namespace {
 
-constexpr std::size_t kLargeMessageBytes = 128
-                                           << 10;  // above, default receive buffers lose messages
+// Above it default receive buffers lose messages.
+constexpr std::size_t kLargeMessageBytes = 128 << 10;
 
 template <class Message>
 std::string RejectAs(const LogEvent& event) {

@@ -152,8 +152,7 @@ TEST_P(LossyLinkTest, LossIsCountedAndTheTrajectorySurvives) {
   EXPECT_GT(num_lost, 0);
   EXPECT_GE(NumMissing(), num_lost);
   EXPECT_EQ(heard_on_b_->states().size(), static_cast<std::size_t>(kLast + 1));
-  // Which messages are lost is another question in each run, and of the 10 % it matters.
-  EXPECT_LT(Error_m(kLast), GetParam() == 1 ? 0.3 : 2.0);
+  EXPECT_LT(Error_m(kLast), 0.3);  // which ones are lost differs: in 35 runs of 10 % 0.01 to 0.08
 }
 INSTANTIATE_TEST_SUITE_P(Percent, LossyLinkTest, testing::Values(1, 10));
 
