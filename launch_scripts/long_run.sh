@@ -12,8 +12,9 @@
 #   --help            this text
 #
 # Memory growth: the largest of the second half over the largest of the second quarter; the first quarter fills the maps.
-# Exit 1 if more was lost, or a process grew by more than 10 % (30 % in less than three minutes: the front end's map takes its time
-# to fill). On a machine that is fast enough and has nothing else to do nothing is lost.
+# Exit 1 if more was lost, if any camera image was lost on its way (whatever --max-lost allows: it is about machines that are too
+# slow), or if a process grew by more than 10 % (30 % in less than three minutes: the front end's map takes its time to fill). On a
+# machine that is fast enough and has nothing else to do nothing is lost.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -110,8 +111,10 @@ failed=no
     num_done=$(number "$process" 'frames done ')
     echo "| $process | $num_done | $incomplete | $skipped | $missing | $(number "$process" 'p50 ') |" \
       "$(number "$process" 'p99 ') | $first | $last | $percent |"
+    images_missing=$(number "$process" 'CAMERA_[A-Z]*: received [0-9]*, missing ')
     ((num_done > 0)) || failed=idle
     ((100 * (incomplete + skipped + missing) <= max_lost * (num_done + skipped))) || failed=lost
+    ((images_missing == 0)) || failed=images
     awk "BEGIN { exit !($percent > $max_growth_percent) }" && failed=grown
     column=$((column + 1))
   done
@@ -119,6 +122,7 @@ failed=no
 cat "$run_dir/long_run.md"
 case $failed in
   idle) die "a process did nothing (logs: $run_dir)" ;;
+  images) die "camera images were lost on their way: see airdos-doctor (logs: $run_dir)" ;;
   lost) die "frames or messages were lost: is the machine fast enough, and idle? (logs: $run_dir)" ;;
   grown) die "a process grew by more than $max_growth_percent %" ;;
 esac
