@@ -30,7 +30,7 @@ class LcmTransport {
   /// Messages that wait for Poll(), of one channel or of all; beyond it the newest are dropped.
   static constexpr int kMaxQueuedOfChannel = 1000;
   static constexpr int kMaxQueuedOfAll = 5000;
-  /// `receive_utime` (us, wall clock): when LCM's thread took the message from the network.
+  /// `receive_utime` (us, wall clock): when the kernel got the last datagram of the message.
   using Handler =
       std::function<void(const void* data, std::size_t size, std::int64_t receive_utime)>;
 
