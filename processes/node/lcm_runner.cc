@@ -76,11 +76,20 @@ void LcmRunner::Receive(int timeout_ms) {
   const bool is_realtime = options_.pace == LcmRunnerOptions::Pace::kRealtime;
   // In lock-step one message at a time, so that the time of the last one is that of the input which
   // made the frame complete.
-  if (!transport_->Poll(timeout_ms) || !is_realtime) return;
+  if (!Poll(timeout_ms) || !is_realtime) return;
   // Bounded: whoever floods a channel must not keep the process from its work.
   for (int i = 0; i < kMaxDrained && !StopRequested() && transport_->Poll(0); ++i) {
   }
   node_->SkipToNewest();
+}
+
+bool LcmRunner::Poll(int timeout_ms) {
+  const double begin_s = SteadyClock_s();
+  const bool has_received = transport_->Poll(timeout_ms);
+  // Where it took longer than it may, this process stood still, and so may have whoever it waits
+  // for: what they say is on its way now.
+  progress_s_ += std::max(0.0, SteadyClock_s() - begin_s - 1e-3 * timeout_ms);
+  return has_received;
 }
 
 bool LcmRunner::WorkOnFrames() {

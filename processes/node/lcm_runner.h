@@ -23,6 +23,7 @@ struct LcmRunnerOptions {
   /// A frame that lacks inputs for longer is completed without. The frames after it that lack
   /// nothing else do not wait for what comes from outside (a camera, a detector), and a tenth as
   /// long for other processes, which have work to do; until one of those channels speaks again.
+  /// While this process stands still, stopped or on a machine that is, no time passes.
   double deadline_s = 5;
   bool publishes_frame_done = false;  ///< says FRAME_DONE after each frame
 };
@@ -45,6 +46,7 @@ class LcmRunner {
 
  private:
   void Receive(int timeout_ms);
+  bool Poll(int timeout_ms);
   bool WorkOnFrames();
   bool WorkOnOne();
   void CompleteAfterDeadline();
@@ -70,7 +72,8 @@ class LcmRunner {
   std::ostream* log_;
 
   std::int64_t last_receive_utime_ = 0;
-  double progress_s_ = 0;  // when a frame was finished last or none waited
+  double progress_s_ =
+      0;  // when a frame was finished last or none waited, later by what stood still
   double next_status_s_ = 0;
   std::set<std::string> silent_said_;   // waiting_for() texts that were said already
   std::set<std::string> rejects_said_;  // channels; later rejects are counted in STATUS only

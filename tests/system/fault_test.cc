@@ -242,6 +242,34 @@ INSTANTIATE_TEST_SUITE_P(Feedback, SlowOptimizerTest,
                                                        "airdos-optimizer"}),
                          [](const auto& instance) { return instance.param.name; });
 
+// The whole machine stands still for a while, far longer than the deadline. Lost: nothing, byte for
+// byte: nobody takes for silent who could not speak.
+TEST_F(FaultTest, NothingIsLostWhileEverybodyStandsStill) {
+  constexpr std::int64_t kLast = 19;
+  constexpr double kDeadline_s = 2;
+  chain_->SetNodeArguments({"--deadline-s", std::to_string(kDeadline_s)});
+  const std::string log = Write(SampleEvents(0, kLast));
+  ASSERT_NO_FATAL_FAILURE(chain_->StartNodes());
+  chain_->StartPlayer(log);
+  for (const std::size_t num_estimates : {5, 10}) {
+    ASSERT_TRUE(listener_->HearUntil([&] { return listener_->states().size() >= num_estimates; },
+                                     LiveChain::kRun_s))
+        << chain_->AllErrors();
+    std::vector<std::string> programs = LiveChain::NodePrograms();
+    programs.push_back("airdos-stereo-player");
+    for (const std::string& program : programs) chain_->process(program)->Signal(SIGSTOP);
+    listener_->HearUntil([] { return false; }, 1.5 * kDeadline_s);
+    for (const std::string& program : programs) chain_->process(program)->Signal(SIGCONT);
+  }
+  HearTheEnd(kLast);
+  StopAndHear();
+
+  EXPECT_EQ(listener_->digests(), ReplayDigests(log, folder_));
+  for (const auto& [process, status] : listener_->statuses()) {
+    EXPECT_EQ(status.num_frames_incomplete, 0) << process << " " << status.waiting_for;
+  }
+}
+
 // Two runs on one machine, on two ports. Lost: nothing; neither hears the other.
 TEST_F(FaultTest, TwoRunsOnTwoPortsDoNotHearEachOther) {
   constexpr std::int64_t kLast = 9;
