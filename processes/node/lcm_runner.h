@@ -72,8 +72,8 @@ class LcmRunner {
   std::ostream* log_;
 
   std::int64_t last_receive_utime_ = 0;
-  double progress_s_ =
-      0;  // when a frame was finished last or none waited, later by what stood still
+  // When a frame was finished last or none waited; later by how long this process stood still.
+  double progress_s_ = 0;
   double next_status_s_ = 0;
   std::set<std::string> silent_said_;   // waiting_for() texts that were said already
   std::set<std::string> rejects_said_;  // channels; later rejects are counted in STATUS only

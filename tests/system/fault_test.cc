@@ -242,8 +242,8 @@ INSTANTIATE_TEST_SUITE_P(Feedback, SlowOptimizerTest,
                                                        "airdos-optimizer"}),
                          [](const auto& instance) { return instance.param.name; });
 
-// The whole machine stands still for a while, far longer than the deadline. Lost: nothing, byte for
-// byte: nobody takes for silent who could not speak.
+// The whole machine stands still for longer than the deadline. Lost: nothing, byte for byte: nobody
+// is taken for silent who could not speak.
 TEST_F(FaultTest, NothingIsLostWhileEverybodyStandsStill) {
   constexpr std::int64_t kLast = 19;
   constexpr double kDeadline_s = 2;
