@@ -90,6 +90,10 @@ std::string FrontendNode::ReceiveUpdate(map_update_t&& message) {
   const std::int64_t seq = message.seq;
   const auto num_parts = static_cast<std::size_t>(message.num_parts);
   const bool is_expected = std::find(published_.begin(), published_.end(), seq) != published_.end();
+  // The optimizer gave up a frame that is still to be published, so what that frame waits for got
+  // lost. Only the next ones: no single wrong number may end the waiting.
+  const std::int64_t ahead = published_.empty() ? 0 : seq - published_.back();
+  if (ahead > 0 && ahead <= options_.feedback_lag) is_feedback_silent_ = true;
   if (!is_expected) return "too late, or of a frame that was not published";
   UpdateParts& parts = updates_[seq];
   const int part = message.part;

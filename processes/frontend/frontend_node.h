@@ -79,7 +79,7 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   std::map<std::int64_t, UpdateParts> updates_;  // of this session, by seq
   std::int64_t newest_update_ = -1;              // complete
   bool is_feedback_silent_ =
-      false;  // a frame had to start without: do not wait again until an update comes
+      false;  // a frame had to start without, or must: do not wait until an update comes
 };
 
 std::unique_ptr<Node> MakeFrontendNode(ConfigReader* config);

@@ -94,13 +94,35 @@ TEST(FrontendNode, UpdatesThatDoNotBelongHereAreRejected) {
   Send(channel::kMapUpdate, Update(1, kSession + 1), &node);
   EXPECT_EQ(num_rejected(), 2);
   EXPECT_EQ(node.channels().at(channel::kMapUpdate).last_reject, "of another session");
-  Send(channel::kMapUpdate, Update(2), &node);  // of a frame that has no output yet
+  Send(channel::kMapUpdate, Update(4), &node);  // of a frame that is far from being done
   EXPECT_EQ(num_rejected(), 3);
   EXPECT_FALSE(node.Step());
   Send(channel::kMapUpdate, Update(0), &node);
   EXPECT_EQ(StepAll(&node).size(), 1u);
   Send(channel::kMapUpdate, Update(0), &node);  // again, and too late
   EXPECT_EQ(num_rejected(), 4);
+}
+
+// Updates 0 and 1 got lost, and the optimizer has waited in vain for frame 2: for it, or the one
+// after where that one got lost as well, nobody waits any more.
+TEST(FrontendNode, AnUpdateOfTheNextFrameEndsTheWaiting) {
+  for (const std::int64_t given_up : {2, 3}) {
+    FrontendNode node(FrontendOptions{});
+    Send(channel::kCalibration, Calibration(), &node);
+    for (int k = 0; k < 6; ++k) SendFrame(k, &node);
+    EXPECT_EQ(StepAll(&node).size(), 2u);
+    Send(channel::kMapUpdate, Update(given_up), &node);
+    EXPECT_EQ(node.channels().at(channel::kMapUpdate).num_rejected, 1);
+    ASSERT_TRUE(node.Step());
+    ASSERT_TRUE(node.Step());
+    EXPECT_EQ(Take(&node).back().seq, 3);
+    // The optimizer has taken up frame 3: from now on it is waited for again.
+    Send(channel::kMapUpdate, Update(3), &node);
+    EXPECT_EQ(StepAll(&node).back().seq, 5);
+    SendFrame(6, &node);
+    EXPECT_TRUE(StepAll(&node).empty());
+    EXPECT_EQ(node.waiting_for(), channel::kMapUpdate);
+  }
 }
 
 TEST(FrontendNode, TheOptimizersWorldIsTakenOverAndTheOdometryFrameStays) {
