@@ -1,6 +1,6 @@
 // A bad cable between two network namespaces, in user space, as not every kernel has netem: hands
-// LCM's datagrams from the one to the other and back, late and not all of them. Which ones are lost
-// depends on the seed and on how many came before.
+// LCM's datagrams from the one to the other and back, late and not all of them. Which messages are
+// lost depends on the seed, their channel and their number, not on who speaks first.
 //
 //   airdos-lossy-link PATH_OF_OTHER_NETWORK LOSS_PERCENT DELAY_MS SEED
 //
@@ -17,6 +17,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -83,25 +84,22 @@ End OpenEnd() {
   return end;
 }
 
-void SayLost(const Bytes& datagram) {
-  // A whole message: "LC02", number, channel, 0, fingerprint, utime, seq.
+/// `CHANNEL SEQ` of a whole message: "LC02", number, channel, 0, fingerprint, utime, seq.
+std::string NameOf(const Bytes& datagram) {
   const bool is_whole = datagram.size() > 40 && std::memcmp(datagram.data(), "LC02", 4) == 0;
   const auto end =
       std::find(datagram.begin() + std::min<std::ptrdiff_t>(8, datagram.end() - datagram.begin()),
                 datagram.end(), 0);
-  if (!is_whole || datagram.end() - end < 25) {
-    std::printf("lost a_part\n");
-    return;
-  }
+  if (!is_whole || datagram.end() - end < 25) return "a_part";
   unsigned long long seq = 0;
   for (int i = 0; i < 8; ++i) seq = seq << 8 | *(end + 17 + i);
-  std::printf("lost %s %llu\n", reinterpret_cast<const char*>(datagram.data() + 8), seq);
+  return std::string(datagram.begin() + 8, end) + " " + std::to_string(seq);
 }
 
 class Link {
  public:
   Link(double loss, std::chrono::milliseconds delay, unsigned seed)
-      : loss_(loss), delay_(delay), random_(seed) {}
+      : loss_(loss), delay_(delay), seed_(seed), parts_(seed) {}
 
   void Receive(const End& from, End* to) {
     Bytes datagram(1 << 16);
@@ -111,8 +109,9 @@ class Link {
                                     reinterpret_cast<sockaddr*>(&source), &size);
     if (length <= 0 || source.sin_port == from.own_port) return;
     datagram.resize(static_cast<std::size_t>(length));
-    if (static_cast<double>(random_()) < loss_ * static_cast<double>(random_.max())) {
-      SayLost(datagram);
+    const std::string name = NameOf(datagram);
+    if (IsLost(name)) {
+      std::printf("lost %s\n", name.c_str());
       return;
     }
     to->waiting.emplace_back(Clock::now() + delay_, std::move(datagram));
@@ -126,9 +125,18 @@ class Link {
   }
 
  private:
+  bool IsLost(const std::string& name) {
+    std::seed_seq seeds(name.begin(), name.end());
+    std::mt19937_64 of_message(seeds);
+    of_message.seed(of_message() + seed_);
+    const std::uint64_t draw = name == "a_part" ? parts_() : of_message();
+    return static_cast<double>(draw) < loss_ * static_cast<double>(std::mt19937_64::max());
+  }
+
   double loss_;
   std::chrono::milliseconds delay_;
-  std::mt19937_64 random_;
+  unsigned seed_;
+  std::mt19937_64 parts_;  // of large messages: one after the other
 };
 
 }  // namespace
