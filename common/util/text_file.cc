@@ -36,6 +36,23 @@ std::string Shown(std::string word) {
   return word;
 }
 
+/// Windows' editors begin a file with a mark of its encoding (U+FEFF). That of UTF-8 is taken away.
+void CheckEncoding(const std::string& path, std::string* first_line) {
+  constexpr const char* kUtf8Mark = "\xEF\xBB\xBF";
+  if (first_line->compare(0, 3, kUtf8Mark) == 0) first_line->erase(0, 3);
+  const bool is_marked = first_line->compare(0, 2, "\xFF\xFE") == 0 ||  // little, big endian
+                         first_line->compare(0, 2, "\xFE\xFF") == 0;
+  const std::string start = first_line->substr(0, 64);
+  // Half of the bytes of figures in UTF-16 are zero.
+  const bool looks_like_it =
+      start.size() >= 4 &&
+      3 * std::count(start.begin(), start.end(), '\0') >= static_cast<std::ptrdiff_t>(start.size());
+  if (is_marked || looks_like_it) {
+    throw InputError(path + ": is UTF-16 text (as PowerShell's > writes it); convert it with " +
+                     "'iconv -f UTF-16 -t UTF-8'");
+  }
+}
+
 }  // namespace
 
 std::vector<TextLine> ReadTextLines(const std::string& path) {
@@ -51,6 +68,7 @@ std::vector<TextLine> ReadTextLines(const std::string& path) {
     if (number > kMaxLines) {
       throw InputError(where + ": more than " + std::to_string(kMaxLines) + " lines");
     }
+    if (number == 1) CheckEncoding(path, &text);
     std::istringstream stream(text);
     TextLine line;
     line.number = number;

@@ -4,12 +4,12 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "common/check/check_folder.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
 #include "common/util/version.h"
+#include "processes/node/check_log.h"
 #include "processes/node/process_cli.h"
-#include "processes/tools/check_folder.h"
-#include "processes/tools/check_log.h"
 
 int main(int argc, char** argv) {
   CLI::App app(

@@ -1,13 +1,13 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/check/check_folder.h"
 #include "common/dataset/oxts.h"
 #include "common/dataset/sequence_files.h"
 #include "common/dataset/stereo_sequence.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
 #include "processes/stereo_player/stereo_player.h"
-#include "processes/tools/check_folder.h"
 #include "tests/fuzz/fuzz_input.h"
 
 namespace airdos {

@@ -13,7 +13,7 @@ violations() {
       rank["util"] = 0; rank["config"] = 1; rank["geometry"] = 2; rank["human"] = 3
       rank["features"] = rank["map"] = rank["dataset"] = rank["simulation"] = 4
       rank["evaluation"] = rank["perception"] = 4
-      rank["optimization"] = 5
+      rank["optimization"] = rank["check"] = 5
       clock = "<(thread|chrono|mutex|shared_mutex|condition_variable|future|ctime|time.h|sys/time.h|pthread.h)>"
     }
     function complain(why) { print FILENAME ": " $0 ": " why }

@@ -1,4 +1,4 @@
-#include "processes/tools/check_folder.h"
+#include "common/check/check_folder.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,9 +10,9 @@
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 
+#include "common/check/check_times.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
-#include "processes/tools/check_times.h"
 #include "tests/support/small_sequence.h"
 
 namespace airdos {

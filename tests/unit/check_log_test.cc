@@ -1,4 +1,4 @@
-#include "processes/tools/check_log.h"
+#include "processes/node/check_log.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,12 +10,12 @@
 
 #include "airdos/image_t.hpp"
 #include "airdos/stereo_calibration_t.hpp"
+#include "common/check/check_jpeg.h"
 #include "common/util/error.h"
 #include "processes/node/channels.h"
 #include "processes/node/codec.h"
 #include "processes/node/event_log.h"
 #include "processes/stereo_player/dataset_source.h"
-#include "processes/tools/check_jpeg.h"
 #include "tests/support/small_sequence.h"
 
 namespace airdos {

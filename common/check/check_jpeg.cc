@@ -1,4 +1,4 @@
-#include "processes/tools/check_jpeg.h"
+#include "common/check/check_jpeg.h"
 
 #include <algorithm>
 #include <cmath>

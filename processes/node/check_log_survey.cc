@@ -1,4 +1,4 @@
-#include "processes/tools/check_log_survey.h"
+#include "processes/node/check_log_survey.h"
 
 #include <algorithm>
 #include <array>

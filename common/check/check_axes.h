@@ -1,7 +1,7 @@
-#ifndef AIRDOS_PROCESSES_TOOLS_CHECK_AXES_H_
-#define AIRDOS_PROCESSES_TOOLS_CHECK_AXES_H_
+#ifndef AIRDOS_COMMON_CHECK_AXES_H_
+#define AIRDOS_COMMON_CHECK_AXES_H_
 
-#include "processes/tools/check_input.h"
+#include "common/check/check_input.h"
 
 namespace airdos {
 
@@ -12,4 +12,4 @@ void CheckGroundTruth(const CheckedInput& input, std::size_t num_frames, Finding
 
 }  // namespace airdos
 
-#endif  // AIRDOS_PROCESSES_TOOLS_CHECK_AXES_H_
+#endif  // AIRDOS_COMMON_CHECK_AXES_H_

@@ -1,9 +1,9 @@
-#ifndef AIRDOS_PROCESSES_TOOLS_CHECK_FOLDER_H_
-#define AIRDOS_PROCESSES_TOOLS_CHECK_FOLDER_H_
+#ifndef AIRDOS_COMMON_CHECK_FOLDER_H_
+#define AIRDOS_COMMON_CHECK_FOLDER_H_
 
 #include <string>
 
-#include "processes/tools/check_input.h"
+#include "common/check/check_input.h"
 
 namespace airdos {
 
@@ -14,4 +14,4 @@ void CheckFolder(const std::string& folder, const CheckOptions& options, Finding
 
 }  // namespace airdos
 
-#endif  // AIRDOS_PROCESSES_TOOLS_CHECK_FOLDER_H_
+#endif  // AIRDOS_COMMON_CHECK_FOLDER_H_

@@ -1,11 +1,11 @@
-#ifndef AIRDOS_PROCESSES_TOOLS_CHECK_PEOPLE_H_
-#define AIRDOS_PROCESSES_TOOLS_CHECK_PEOPLE_H_
+#ifndef AIRDOS_COMMON_CHECK_PEOPLE_H_
+#define AIRDOS_COMMON_CHECK_PEOPLE_H_
 
 #include <string>
 #include <vector>
 
+#include "common/check/check_input.h"
 #include "common/geometry/stereo_camera.h"
-#include "processes/tools/check_input.h"
 
 namespace airdos {
 
@@ -57,4 +57,4 @@ class MaskCheck {
 
 }  // namespace airdos
 
-#endif  // AIRDOS_PROCESSES_TOOLS_CHECK_PEOPLE_H_
+#endif  // AIRDOS_COMMON_CHECK_PEOPLE_H_

@@ -1,4 +1,4 @@
-#include "processes/tools/check_axes.h"
+#include "common/check/check_axes.h"
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>

@@ -1,11 +1,11 @@
-#include "processes/tools/check_input.h"
+#include "common/check/check_input.h"
 
 #include <algorithm>
 
-#include "processes/tools/check_axes.h"
-#include "processes/tools/check_people.h"
-#include "processes/tools/check_stereo.h"
-#include "processes/tools/check_times.h"
+#include "common/check/check_axes.h"
+#include "common/check/check_people.h"
+#include "common/check/check_stereo.h"
+#include "common/check/check_times.h"
 
 namespace airdos {
 

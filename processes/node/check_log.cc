@@ -1,18 +1,18 @@
-#include "processes/tools/check_log.h"
+#include "processes/node/check_log.h"
 
 #include <map>
 #include <utility>
 
+#include "common/check/check_jpeg.h"
+#include "common/check/check_people.h"
 #include "processes/node/channels.h"
+#include "processes/node/check_log_survey.h"
 #include "processes/node/codec.h"
 #include "processes/node/event_log.h"
 #include "processes/node/image_codec.h"
 #include "processes/node/keypoint_messages.h"
 #include "processes/node/log_source.h"
 #include "processes/node/validate.h"
-#include "processes/tools/check_jpeg.h"
-#include "processes/tools/check_log_survey.h"
-#include "processes/tools/check_people.h"
 
 namespace airdos {
 namespace {

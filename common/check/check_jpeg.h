@@ -1,12 +1,12 @@
-#ifndef AIRDOS_PROCESSES_TOOLS_CHECK_JPEG_H_
-#define AIRDOS_PROCESSES_TOOLS_CHECK_JPEG_H_
+#ifndef AIRDOS_COMMON_CHECK_JPEG_H_
+#define AIRDOS_COMMON_CHECK_JPEG_H_
 
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "processes/tools/check_findings.h"
+#include "common/check/check_findings.h"
 
 namespace airdos {
 
@@ -27,4 +27,4 @@ class JpegCheck {
 
 }  // namespace airdos
 
-#endif  // AIRDOS_PROCESSES_TOOLS_CHECK_JPEG_H_
+#endif  // AIRDOS_COMMON_CHECK_JPEG_H_

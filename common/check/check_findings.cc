@@ -1,4 +1,4 @@
-#include "processes/tools/check_findings.h"
+#include "common/check/check_findings.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "processes/tools/check_stereo.h"
+#include "common/check/check_stereo.h"
 
 #include <algorithm>
 #include <cmath>

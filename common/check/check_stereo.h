@@ -1,12 +1,12 @@
-#ifndef AIRDOS_PROCESSES_TOOLS_CHECK_STEREO_H_
-#define AIRDOS_PROCESSES_TOOLS_CHECK_STEREO_H_
+#ifndef AIRDOS_COMMON_CHECK_STEREO_H_
+#define AIRDOS_COMMON_CHECK_STEREO_H_
 
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
+#include "common/check/check_findings.h"
 #include "common/geometry/stereo_camera.h"
-#include "processes/tools/check_findings.h"
 
 namespace airdos {
 
@@ -41,4 +41,4 @@ class StereoCheck {
 
 }  // namespace airdos
 
-#endif  // AIRDOS_PROCESSES_TOOLS_CHECK_STEREO_H_
+#endif  // AIRDOS_COMMON_CHECK_STEREO_H_

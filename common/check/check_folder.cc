@@ -1,14 +1,14 @@
-#include "processes/tools/check_folder.h"
+#include "common/check/check_folder.h"
 
 #include <filesystem>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
+#include "common/check/check_jpeg.h"
+#include "common/check/check_people.h"
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
-#include "processes/tools/check_jpeg.h"
-#include "processes/tools/check_people.h"
 
 namespace airdos {
 namespace {

@@ -1,5 +1,5 @@
-#ifndef AIRDOS_PROCESSES_TOOLS_CHECK_LOG_SURVEY_H_
-#define AIRDOS_PROCESSES_TOOLS_CHECK_LOG_SURVEY_H_
+#ifndef AIRDOS_PROCESSES_NODE_CHECK_LOG_SURVEY_H_
+#define AIRDOS_PROCESSES_NODE_CHECK_LOG_SURVEY_H_
 
 #include <cstdint>
 #include <map>
@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "common/check/check_findings.h"
 #include "common/dataset/stereo_sequence.h"
 #include "common/geometry/stereo_camera.h"
 #include "processes/node/event_log.h"
 #include "processes/node/header.h"
-#include "processes/tools/check_findings.h"
 
 namespace airdos {
 
@@ -74,4 +74,4 @@ class LogSurvey {
 
 }  // namespace airdos
 
-#endif  // AIRDOS_PROCESSES_TOOLS_CHECK_LOG_SURVEY_H_
+#endif  // AIRDOS_PROCESSES_NODE_CHECK_LOG_SURVEY_H_

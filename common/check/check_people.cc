@@ -1,4 +1,4 @@
-#include "processes/tools/check_people.h"
+#include "common/check/check_people.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-#ifndef AIRDOS_PROCESSES_TOOLS_CHECK_INPUT_H_
-#define AIRDOS_PROCESSES_TOOLS_CHECK_INPUT_H_
+#ifndef AIRDOS_COMMON_CHECK_INPUT_H_
+#define AIRDOS_COMMON_CHECK_INPUT_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "common/check/check_findings.h"
 #include "common/dataset/stereo_sequence.h"
 #include "common/geometry/se3.h"
 #include "common/geometry/stereo_camera.h"
 #include "common/human/layouts.h"
-#include "processes/tools/check_findings.h"
 
 namespace airdos {
 
@@ -68,4 +68,4 @@ void CheckFrames(const CheckedInput& input, const CheckOptions& options, Finding
 
 }  // namespace airdos
 
-#endif  // AIRDOS_PROCESSES_TOOLS_CHECK_INPUT_H_
+#endif  // AIRDOS_COMMON_CHECK_INPUT_H_

@@ -1,4 +1,4 @@
-#include "processes/tools/check_times.h"
+#include "common/check/check_times.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#ifndef AIRDOS_PROCESSES_TOOLS_CHECK_TIMES_H_
-#define AIRDOS_PROCESSES_TOOLS_CHECK_TIMES_H_
+#ifndef AIRDOS_COMMON_CHECK_TIMES_H_
+#define AIRDOS_COMMON_CHECK_TIMES_H_
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "processes/tools/check_findings.h"
+#include "common/check/check_findings.h"
 
 namespace airdos {
 
@@ -17,4 +17,4 @@ void CheckTimes(const std::vector<std::int64_t>& utimes, const std::string& wher
 
 }  // namespace airdos
 
-#endif  // AIRDOS_PROCESSES_TOOLS_CHECK_TIMES_H_
+#endif  // AIRDOS_COMMON_CHECK_TIMES_H_

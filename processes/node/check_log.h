@@ -1,9 +1,9 @@
-#ifndef AIRDOS_PROCESSES_TOOLS_CHECK_LOG_H_
-#define AIRDOS_PROCESSES_TOOLS_CHECK_LOG_H_
+#ifndef AIRDOS_PROCESSES_NODE_CHECK_LOG_H_
+#define AIRDOS_PROCESSES_NODE_CHECK_LOG_H_
 
 #include <string>
 
-#include "processes/tools/check_input.h"
+#include "common/check/check_input.h"
 
 namespace airdos {
 
@@ -15,4 +15,4 @@ void CheckLog(const std::string& path, const CheckOptions& options, FindingList*
 
 }  // namespace airdos
 
-#endif  // AIRDOS_PROCESSES_TOOLS_CHECK_LOG_H_
+#endif  // AIRDOS_PROCESSES_NODE_CHECK_LOG_H_

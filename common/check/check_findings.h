@@ -1,5 +1,5 @@
-#ifndef AIRDOS_PROCESSES_TOOLS_CHECK_FINDINGS_H_
-#define AIRDOS_PROCESSES_TOOLS_CHECK_FINDINGS_H_
+#ifndef AIRDOS_COMMON_CHECK_FINDINGS_H_
+#define AIRDOS_COMMON_CHECK_FINDINGS_H_
 
 #include <cstdint>
 #include <map>
@@ -66,4 +66,4 @@ double Quantile(std::vector<double> values, double fraction);
 
 }  // namespace airdos
 
-#endif  // AIRDOS_PROCESSES_TOOLS_CHECK_FINDINGS_H_
+#endif  // AIRDOS_COMMON_CHECK_FINDINGS_H_
