@@ -4,7 +4,6 @@
 #include <time.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <iomanip>
 #include <nlohmann/json.hpp>
@@ -13,7 +12,6 @@
 #include <sstream>
 #include <utility>
 
-#include "airdos/state_estimate_t.hpp"
 #include "common/util/digest.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
@@ -89,8 +87,7 @@ class Archive {
     if (message.channel == channel::kCameraLeft || message.channel == channel::kCameraRight ||
         message.channel == channel::kStaticFeatures)
       frames_.insert({header.session, header.seq});
-    if (message.channel == channel::kStateEstimate && HasPose(data, size))
-      posed_.insert({header.session, header.seq});
+    tally_.Take(message.channel, data, size);
     if (IsOutputChannel(message.channel)) digests_.Add(message.channel, data, size);
     if (writer_ && (writes_inputs_ || !is_input))
       writer_->Append(header.utime, message.channel, data, size);
@@ -98,27 +95,18 @@ class Archive {
 
   void Fill(ReplayResult* result) const {
     result->num_frames = static_cast<std::int64_t>(frames_.size());
-    result->num_posed = static_cast<std::int64_t>(posed_.size());
+    result->tally = tally_.Count();
+    result->num_posed = result->tally.num_frames - result->tally.num_without_pose;
     result->num_events = writer_ ? writer_->num_events() : 0;
     result->digests = digests_.Result();
   }
 
  private:
-  static bool HasPose(const void* data, std::size_t size) {
-    state_estimate_t estimate = {};
-    if (!Decode(data, size, &estimate)) return false;
-    if (estimate.status == state_estimate_t::STATUS_INVALID) return false;
-    double sum = 0;
-    for (const double value : estimate.position_W_C) sum += value;
-    for (const double value : estimate.orientation_W_C) sum += value;
-    return std::isfinite(sum);
-  }
-
   bool writes_inputs_;
   std::optional<EventLogWriter> writer_;
   ChannelDigests digests_;
   std::set<FrameKey> frames_;
-  std::set<FrameKey> posed_;
+  RunTally tally_;
 };
 
 std::string FileSha256(const std::string& path) {
@@ -234,7 +222,8 @@ std::string FormatDigests(const std::map<std::string, ChannelDigests::Entry>& di
 std::string FormatSummary(const ReplayResult& result) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(1);
-  text << "frames: " << result.num_frames << ", with a pose: " << result.num_posed << "\n";
+  text << "frames: " << result.num_frames << ", with a pose: " << result.num_posed << " ("
+       << ToText(result.tally) << ")\n";
   text << "ms per frame      wall: mean    p50    p99    CPU: mean    p50    p99\n";
   for (const auto& [name, timing] : result.timing) {
     const Statistics wall = StatisticsOf(timing.wall_ms);

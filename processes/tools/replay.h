@@ -11,6 +11,7 @@
 #include "processes/node/channel_digests.h"
 #include "processes/node/log_source.h"
 #include "processes/node/node.h"
+#include "processes/node/run_tally.h"
 
 namespace airdos {
 
@@ -36,6 +37,7 @@ struct NodeTiming {
 struct ReplayResult {
   std::int64_t num_frames = 0;  ///< images that the source had: different (session, seq)
   std::int64_t num_posed = 0;   ///< of these, with a STATE_ESTIMATE that holds a pose
+  RunTally::Counts tally;       ///< where the poses came from
   std::int64_t num_events = 0;  ///< in the output log
   double wall_s = 0;            ///< from the first frame to the last, Finish() included
   std::string log_sha256;       ///< of the output log, as sha256sum prints it; empty if none
