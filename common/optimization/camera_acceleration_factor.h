@@ -8,10 +8,13 @@
 
 namespace airdos {
 
-/// Acceleration of the camera between three consecutive frames (not in the paper):
+// clang-format off
+/// Acceleration of the camera between three consecutive frames 0, 1, 2 (not in the paper):
 ///
-///   v_1 = (t_1 - t_0) / h_1,   w_1 = Log(R_0^T R_1) / h_1,   v_2, w_2 likewise,   h = (h_1 + h_2)
-///   / 2 r   = ((v_2 - v_1) / (h sigma_linear), (w_2 - w_1) / (h sigma_angular))
+///   v_i = (t_i - t_{i-1}) / h_i,    w_i = Log(R_{i-1}^T R_i) / h_i    (i = 1, 2)
+///   h   = (h_1 + h_2) / 2
+///   r   = ((v_2 - v_1) / (h sigma_linear), (w_2 - w_1) / (h sigma_angular))
+// clang-format on
 ///
 /// h_i are the time steps in s, so that a lost frame or an uneven rate does not read as a jerk.
 /// Blocks: T_W_C of the three frames (7 each).

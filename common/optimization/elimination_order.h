@@ -22,10 +22,9 @@ struct EliminationOrder {
 ///     that do not know of each other, and is eliminated after both. Against a sweep from end to
 ///     end this halves the cost and more, as every piece carries the poses of its own frames only;
 ///  2. within a slice that stands between two pieces, first what has no partner in other slices
-///  (the
-///     joints of the limbs), each alone, the one with the fewest neighbours first: from the leaves
-///     to the root; then the rest (torso and velocity; all points of a rigid object) in one front.
-///     A slice that is parted no more is taken apart the same way altogether;
+///     (the joints of the limbs), each alone, the one with the fewest neighbours first: from the
+///     leaves to the root; then the rest (torso and velocity; all points of a rigid object) in
+///     one front. A slice that is not parted any more is eliminated the same way altogether;
 ///  3. what belongs to the whole track (lengths, a motion over the track).
 ///
 /// Any order is right: what couples unknowns in a way not foreseen here only costs more.

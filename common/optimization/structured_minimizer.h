@@ -13,20 +13,30 @@
 
 namespace airdos {
 
+// clang-format off
 /// Levenberg-Marquardt for graphs of cameras, static landmarks and moving objects. The normal
 /// equations have the shape of an arrow; everything but the poses is eliminated piece by piece:
 ///
-///            landmarks   track 1 ... track n   poses
-///           [ \                               | x x ]   3 x 3 blocks, one landmark each
-///           [   \                             | x x ]
-///           [     [1 a    : l]                | x   ]   a track: its slices in time are coupled
-///           with [     [a 2 b  : l]                | x x ]   their neighbours (a, b, ...: motion),
-///           all of [     [  b 3 .: l]                |   x ]   them with what the whole track
-///           shares (l: [     [........L ]   ...          |     ]   segment lengths, a motion over
-///           the track) [ --------------------------------+---- ]   and with the pose of their
-///           frame [ symmetric                       | P   ]   poses, dense at the end
+///      landmarks | track 1     : l | ... | track n     : l | poses
+///    [ o         |                 |     |                 | x x ]
+///    [   o       |                 |     |                 | x x ]  3 x 3 blocks, one a landmark
+///    [     o     |                 |     |                 | x x ]
+///    [ ----------+-----------------+-----+-----------------+---- ]
+///    [           | 1 a         : l |     |                 | x   ]  slices 1, 2, 3 ... in time,
+///    [           | a 2 b       : l |     |                 | x x ]  each coupled with its
+///    [           |   b 3 .     : l |     |                 |   x ]  neighbours by motion (a, b)
+///    [           | l l l .     : L |     |                 |     ]  and with what the track shares
+///    [ ----------+-----------------+-----+-----------------+---- ]
+///    [                              ...                          ]
+///    [ ----------+-----------------+-----+-----------------+---- ]
+///    [ symmetric                                           | P P ]  poses, dense, at the end
+///    [                                                     | P P ]
 ///
-/// In which order a track is taken apart says elimination_order.h; how, block_elimination.h. With n
+/// What a track shares (l, L) are its segment lengths, or one motion over all of it; x couples a
+/// slice with the pose of its frame.
+// clang-format on
+///
+/// elimination_order.h says in which order a track is eliminated; block_elimination.h, how. With n
 /// people over w frames, b scalars of torso and velocity in a slice (21), l of lengths (14), the
 /// multiply-adds of one step are about
 ///
@@ -44,9 +54,8 @@ namespace airdos {
 /// With `steps_by_track` it parts from Ceres in two things, made for a window that is solved again
 /// with every frame and starts near its solution (warm):
 ///  - A track (or the landmarks) whose cost a step makes worse is put back, if that lowers its
-///  cost,
-///    and damped more until its steps succeed. One joint on the kink of its segment's length then
-///    does not shrink the steps of all others.
+///    cost, and damped more until its steps succeed. One joint on the kink of its segment's length
+///    then does not shrink the steps of all others.
 ///  - A track whose cost followed the linear prediction, or hardly changed, keeps its linearization
 ///    and its elimination. It has become a quadratic prior on the poses, S d = -r, of which only r
 ///    moves on with them; its unknowns follow by back-substitution. Costs are always evaluated in
