@@ -17,6 +17,7 @@
 #include "processes/node/conversions.h"
 #include "processes/node/frame_joiner.h"
 #include "processes/node/node.h"
+#include "processes/node/stray_watch.h"
 
 namespace airdos {
 
@@ -94,8 +95,8 @@ class FrameNode : public Node {
   template <class Message>
   void Join(const std::string& channel, std::optional<Message> Inputs::*field) {
     const int input = AddInput(channel);
-    Subscribe<Message>(channel, [this, input, channel, field](Message&& message) {
-      return Arrived(input, channel, HeaderOf(message),
+    Subscribe<Message>(channel, [this, input, field](Message&& message) {
+      return Arrived(input, HeaderOf(message),
                      [&](Inputs& inputs) { inputs.*field = std::move(message); });
     });
   }
@@ -107,14 +108,14 @@ class FrameNode : public Node {
   void JoinParts(const std::string& channel, std::vector<Message> Inputs::*field) {
     const int input = AddInput(channel);
     const auto set = std::make_shared<PartSet<Message>>();
-    Subscribe<Message>(channel, [this, input, channel, field, set](Message&& message) {
+    Subscribe<Message>(channel, [this, input, field, set](Message&& message) {
       const Header header = HeaderOf(message);
       FrameJoiner::Key key;
       const FrameJoiner::Arrival arrival = Joiner().Announce(input, header, &key);
-      if (arrival != FrameJoiner::Arrival::kNew) return Refused(arrival, channel, header);
+      if (arrival != FrameJoiner::Arrival::kNew) return Refused(arrival, input, header);
       if (set->parts.empty() || set->key < key || key < set->key) *set = {key, {}};
       return AddPart(std::move(message), set.get(), [&](std::vector<Message>&& parts) {
-        Arrived(input, channel, header, [&](Inputs& inputs) { inputs.*field = std::move(parts); });
+        Arrived(input, header, [&](Inputs& inputs) { inputs.*field = std::move(parts); });
       });
     });
   }
@@ -142,6 +143,14 @@ class FrameNode : public Node {
   /// what it published is dropped and it is called again, with nothing in `inputs`, as others wait
   /// for that output; then the exception goes on to whoever called Step() or CompleteOldest().
   virtual void ProcessFrame(const Header& header, Inputs inputs) = 0;
+
+  /// Numbers that came on a channel that was joined.
+  const StrayWatch& numbers_of(const std::string& channel) const {
+    const auto& names = channels_of_inputs_;
+    const auto place = std::find(names.begin(), names.end(), channel);
+    AIRDOS_CHECK(place != names.end());
+    return watches_[static_cast<std::size_t>(place - names.begin())];
+  }
 
   /// Calibration of the frame in work.
   const StereoCamera& camera() const { return camera_; }
@@ -178,6 +187,7 @@ class FrameNode : public Node {
   int AddInput(const std::string& channel) {
     AIRDOS_CHECK(joiner_ == nullptr);
     channels_of_inputs_.push_back(channel);
+    watches_.emplace_back(channel, watches_.empty());
     return static_cast<int>(channels_of_inputs_.size()) - 1;
   }
 
@@ -190,10 +200,11 @@ class FrameNode : public Node {
   }
 
   template <class Fill>
-  std::string Arrived(int input, const std::string& channel, const Header& header, Fill fill) {
+  std::string Arrived(int input, const Header& header, Fill fill) {
     FrameJoiner::Key key;
     const FrameJoiner::Arrival arrival = Joiner().Add(input, header, &key);
-    if (arrival != FrameJoiner::Arrival::kNew) return Refused(arrival, channel, header);
+    if (arrival != FrameJoiner::Arrival::kNew) return Refused(arrival, input, header);
+    watches_[static_cast<std::size_t>(input)].AddNew(header);
     Slot& slot = inputs_[key];
     slot.num_bytes += num_bytes_received();
     num_pending_bytes_ += num_bytes_received();
@@ -226,12 +237,14 @@ class FrameNode : public Node {
     calibrated_.pop_front();
   }
 
-  std::string Refused(FrameJoiner::Arrival arrival, const std::string& channel,
-                      const Header& header) {
+  std::string Refused(FrameJoiner::Arrival arrival, int input, const Header& header) {
     if (arrival == FrameJoiner::Arrival::kTooFar) {
       return "seq " + std::to_string(header.seq) + " is far beyond the one before";
     }
-    ++counters(channel).num_duplicate;
+    const auto slot = static_cast<std::size_t>(input);
+    ++counters(channels_of_inputs_[slot]).num_duplicate;
+    const std::string warning = watches_[slot].AddRefused(header);
+    if (!warning.empty()) Warn(warning);
     return "";
   }
 
@@ -270,6 +283,7 @@ class FrameNode : public Node {
   }
 
   std::vector<std::string> channels_of_inputs_;
+  std::vector<StrayWatch> watches_;  // of each input
   std::unique_ptr<FrameJoiner> joiner_;
   std::map<FrameJoiner::Key, Slot> inputs_;
   std::size_t num_pending_bytes_ = 0;
