@@ -19,6 +19,9 @@ namespace airdos {
 /// - people.jsonl: one line per person and frame, in order of (frame, track);
 /// - people/<track>.tum: pose of each person's torso, see TorsoPose().
 ///
+/// In files of times these go forward: poses whose time is not later than that of an image before
+/// are left out, and a comment in the first line says how many.
+///
 /// Returns the paths. Throws InputError naming the file that cannot be written.
 std::vector<std::string> ExportMap(const FourDMap& map, const std::string& folder);
 
