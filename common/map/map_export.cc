@@ -39,16 +39,13 @@ class OutputFile {
 /// for granted that they do. Others are left out, and a comment says how many.
 class TrajectoryRows {
  public:
-  /// False if the row is left out.
-  bool Add(std::int64_t utime, const Se3& pose) {
-    const bool is_later = !last_utime_ || utime > *last_utime_;
-    if (!is_later) {
+  void Add(std::int64_t utime, const Se3& pose) {
+    if (last_utime_ && utime <= *last_utime_) {
       ++num_left_out_;
-      return false;
+      return;
     }
     last_utime_ = utime;
     rows_ += TumRow(utime, pose);
-    return true;
   }
   std::string Text() const {
     if (num_left_out_ == 0) return rows_;
@@ -91,7 +88,8 @@ void ExportTrajectories(const FourDMap& map, const std::string& folder,
   TrajectoryRows live_rows;
   for (const auto& [id, frame] : map.frames) {
     const std::optional<Se3> best = frame.best();
-    if (best && refined_rows.Add(frame.utime, *best)) kitti.Write(KittiRow(*best));
+    if (best) refined_rows.Add(frame.utime, *best);
+    if (best) kitti.Write(KittiRow(*best));
     if (frame.live) live_rows.Add(frame.utime, *frame.live);
     has_ground_truth |= frame.ground_truth.has_value();
   }

@@ -219,7 +219,11 @@ std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
   if (inputs.right) right = DecodeGray(*inputs.right);
   const bool has_right = inputs.right && Fits(right, channel::kCameraRight);
   if (!Fits(left, channel::kCameraLeft)) return std::nullopt;
-  if (has_right) watches_.input.AddPair(*left, *right);
+  // Images of other times are no pair, rectified or not; that is said of their numbers.
+  constexpr std::int64_t kMaxApart_us = 20000;
+  const bool is_pair = has_right && inputs.right->utime <= inputs.left->utime + kMaxApart_us &&
+                       inputs.left->utime <= inputs.right->utime + kMaxApart_us;
+  if (is_pair) watches_.input.AddPair(*left, *right);
   // A blank right image holds no corner: the landmarks are tracked in the left one alone.
   if (!has_right) right = cv::Mat::zeros(left->size(), CV_8UC1);
   return StereoImagePair{FrameId{header.seq},

@@ -86,7 +86,9 @@ void HumanTrackerNode::WatchKeypoints(const HumanTrackerInputs& inputs, const Pe
   for (const std::string& warning :
        {watch(inputs.left_keypoints, channel::kPersonKeypointsLeft, &watches_.left),
         watch(inputs.right_keypoints, channel::kPersonKeypointsRight, &watches_.right),
-        watches_.people.Add(frame.left, frame.right)}) {
+        inputs.left_keypoints && inputs.right_keypoints
+            ? watches_.people.Add(frame.left, frame.right)
+            : std::string()}) {
     if (!warning.empty()) Warn(warning);
   }
 }

@@ -36,6 +36,8 @@ class FrameNode : public Node {
   /// beyond it (dropped, in realtime pace), so memory stays bounded.
   static constexpr std::size_t kMaxPending = 1000;
   static constexpr std::size_t kMaxPendingBytes = 512u << 20;
+  /// So many frames may come before their calibration, which some say once a second.
+  static constexpr int kPatienceForCalibration = 40;
   /// Sessions whose calibration is kept; beyond it the one that was heard first is forgotten.
   static constexpr std::size_t kMaxCalibrations = 100;
 
@@ -205,6 +207,10 @@ class FrameNode : public Node {
     const FrameJoiner::Arrival arrival = Joiner().Add(input, header, &key);
     if (arrival != FrameJoiner::Arrival::kNew) return Refused(arrival, input, header);
     watches_[static_cast<std::size_t>(input)].AddNew(header);
+    if (input == 0 && !HasCalibration(header)) {
+      if (num_uncalibrated_ < kPatienceForCalibration) ++num_uncalibrated_;
+      if (num_uncalibrated_ == kPatienceForCalibration) WarnOfCalibration(header.session);
+    }
     Slot& slot = inputs_[key];
     slot.num_bytes += num_bytes_received();
     num_pending_bytes_ += num_bytes_received();
@@ -252,6 +258,17 @@ class FrameNode : public Node {
     return !needs_calibration_ || calibrations_.count(header.session) > 0;
   }
 
+  void WarnOfCalibration(std::int64_t session) {
+    if (uncalibrated_said_ == session) return;
+    uncalibrated_said_ = session;
+    std::string others;
+    if (!calibrated_.empty()) {
+      others = "; there is one for session " + std::to_string(calibrated_.back());
+    }
+    Warn("no CALIBRATION yet for session " + std::to_string(session) +
+         ": no pose will come until it does" + others);
+  }
+
   void Work(const FrameJoiner::Frame& frame) {
     Inputs inputs = std::move(inputs_[frame.key].inputs);
     DropInputs(frame.key);
@@ -264,7 +281,11 @@ class FrameNode : public Node {
       ++counters(channels_of_inputs_[static_cast<std::size_t>(input)]).num_missing;
     }
     if (!frame.missing.empty() || !HasCalibration(frame.header)) ++mutable_frames().num_incomplete;
-    if (!HasCalibration(frame.header)) return;  // without it no pixel has a meaning
+    if (!HasCalibration(frame.header)) {  // without it no pixel has a meaning
+      WarnOfCalibration(frame.header.session);
+      return;
+    }
+    num_uncalibrated_ = 0;
     ++mutable_frames().num_done;
     if (needs_calibration_) camera_ = calibrations_.at(frame.header.session);
     if (!session_ || *session_ != frame.header.session) {
@@ -292,6 +313,8 @@ class FrameNode : public Node {
   std::deque<std::int64_t> calibrated_;                // their sessions, first heard first
   StereoCamera camera_;
   std::optional<std::int64_t> session_;
+  int num_uncalibrated_ = 0;  // frames in a row that came without
+  std::optional<std::int64_t> uncalibrated_said_;
 };
 
 }  // namespace airdos

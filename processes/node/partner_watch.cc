@@ -32,8 +32,10 @@ std::string PartnerWatch::Add(const Header& left, const std::optional<Header>& p
   if (partner) offsets_us_.push_back(between_us(left.utime, partner->utime));
   last_utime_ = left.utime;
   if (!schedule_.IsDue()) return "";
-  std::string text = are_numbers_said_ ? "" : JudgeNumbers(left.session, left_numbers, numbers);
-  if (text.empty() && !are_times_said_) text = JudgeTimes();
+  std::string text = are_times_said_ ? "" : JudgeTimes();
+  if (text.empty() && !are_numbers_said_) {
+    text = JudgeNumbers(left.session, left_numbers, numbers);
+  }
   num_left_ = num_with_partner_ = 0;
   steps_us_.clear();
   offsets_us_.clear();

@@ -246,6 +246,9 @@ std::string Validate(const static_features_t& message) {
   check.Count("num_masked", message.num_masked, INT32_MAX);
   check.Count("num_matched", message.num_matched, INT32_MAX);
   check.Count("num_features", message.num_features, kMaxFeatures);
+  if (message.tracking_state == static_features_t::STATE_INVALID && message.num_features > 0) {
+    check.Fail("num_features", message.num_features, "must be 0 where nothing was tracked");
+  }
   check.Ranges("landmark_id", message.landmark_id, 0, kMaxInt64);
   check.Ranges("u_left_px", message.u_left_px, -kMaxPixel, kMaxPixel);
   check.Ranges("v_px", message.v_px, -kMaxPixel, kMaxPixel);
