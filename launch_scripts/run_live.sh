@@ -78,7 +78,7 @@ fi
 
 declare -A pids=() exit_codes=()
 stopping=no
-trap 'stopping=yes' INT TERM
+trap 'stopping=yes' INT TERM HUP
 
 # Ctrl-C reaches a sleep as well, and its failure must not end the script before it has stopped the others.
 pause() { sleep "$1" || true; }

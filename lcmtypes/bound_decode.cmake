@@ -16,7 +16,7 @@ set(index "(\\[a[0-9]\\])*")
 set(fails "return -1;  // bounded by bound_decode.cmake\n")
 
 # Strings: the length counts the closing zero, so it is at least 1.
-string(REGEX REPLACE "if\\((__${name}_len__) > maxlen - pos\\) return -1;\n"
+string(REGEX REPLACE "if\\((__${name}_len__|__elem_len) > maxlen - pos\\) return -1;\n"
                      "if(\\1 < 1 || \\1 > maxlen - pos) ${fails}" text "${text}")
 # Rows of numbers, also the inner ones of a table: the elements are in the message one after the other.
 string(REGEX REPLACE
@@ -27,6 +27,10 @@ string(REGEX REPLACE
   "(this->${name})\\.resize\\(([^()]+)\\);(\n *for \\([^\n]*\n *if\\()([^()]+)(\\) {)"
   "if((\\2) < 0 || (\\4) < 0 || (int64_t)(\\2) * ((\\4) > 0 ? (\\4) : 1) > (maxlen - pos) / (int)sizeof(\\1[0][0])) ${fails}    \\1.resize(\\2);\\3\\4\\5"
   text "${text}")
+# Rows of strings: each has its length and its closing zero.
+string(REGEX REPLACE
+  "(this->${name})\\.resize\\(([^()]+)\\);(\n *for \\([^\n]*\n *int32_t __elem_len;)"
+  "if((\\2) < 0 || (\\2) > (maxlen - pos) / 5) ${fails}    \\1.resize(\\2);\\3" text "${text}")
 # Structures: the smallest one has all counts zero and all texts empty.
 string(REGEX REPLACE
   "(this->(${name}))\\.resize\\(([^()]+)\\);(\n *for \\([^\n]*\n *tlen = this->${name}\\[a0\\]\\._decodeNoHash)"

@@ -35,6 +35,30 @@ class OutputFile {
   std::ofstream file_;
 };
 
+/// Rows of a trajectory in order of image numbers, whose times go forward: whoever reads it takes
+/// for granted that they do. Others are left out, and a comment says how many.
+class TrajectoryRows {
+ public:
+  void Add(std::int64_t utime, const Se3& pose) {
+    if (last_utime_ && utime <= *last_utime_) {
+      ++num_left_out_;
+      return;
+    }
+    last_utime_ = utime;
+    rows_ += TumRow(utime, pose);
+  }
+  std::string Text() const {
+    if (num_left_out_ == 0) return rows_;
+    return "# left out: " + std::to_string(num_left_out_) +
+           " poses whose time is not later than that of an image before them\n" + rows_;
+  }
+
+ private:
+  std::optional<std::int64_t> last_utime_;
+  std::int64_t num_left_out_ = 0;
+  std::string rows_;
+};
+
 std::string KittiRow(const Se3& pose) {
   const Eigen::Matrix4d m = pose.matrix();
   std::string row;
@@ -60,13 +84,17 @@ void ExportTrajectories(const FourDMap& map, const std::string& folder,
   OutputFile live(folder + "/" + names[1]);
   OutputFile kitti(folder + "/" + names[2]);
   bool has_ground_truth = false;
+  TrajectoryRows refined_rows;
+  TrajectoryRows live_rows;
   for (const auto& [id, frame] : map.frames) {
     const std::optional<Se3> best = frame.best();
-    if (best) refined.Write(TumRow(frame.utime, *best));
+    if (best) refined_rows.Add(frame.utime, *best);
     if (best) kitti.Write(KittiRow(*best));
-    if (frame.live) live.Write(TumRow(frame.utime, *frame.live));
+    if (frame.live) live_rows.Add(frame.utime, *frame.live);
     has_ground_truth |= frame.ground_truth.has_value();
   }
+  refined.Write(refined_rows.Text());
+  live.Write(live_rows.Text());
   refined.Close();
   live.Close();
   kitti.Close();
@@ -74,9 +102,11 @@ void ExportTrajectories(const FourDMap& map, const std::string& folder,
   paths->push_back(folder + "/ground_truth.tum");
   OutputFile truth(paths->back());
   truth.Write(std::string("# axes: ") + NameOfAxes(map.ground_truth_axes) + "\n");
+  TrajectoryRows truth_rows;
   for (const auto& [id, frame] : map.frames) {
-    if (frame.ground_truth) truth.Write(TumRow(frame.utime, *frame.ground_truth));
+    if (frame.ground_truth) truth_rows.Add(frame.utime, *frame.ground_truth);
   }
+  truth.Write(truth_rows.Text());
   truth.Close();
 }
 
@@ -101,17 +131,17 @@ void ExportPly(const FourDMap& map, const std::string& path) {
 void ExportPeople(const FourDMap& map, const std::string& folder, std::vector<std::string>* paths) {
   paths->push_back(folder + "/people.jsonl");
   OutputFile lines(paths->back());
-  std::map<HumanId, std::string> tracks;
+  std::map<HumanId, TrajectoryRows> tracks;
   for (const auto& [key, human] : map.humans) {
     lines.Write(HumanToJson(key.first, key.second, human) + "\n");
     const std::optional<Se3> T_W_H = TorsoPose(human);
-    if (T_W_H) tracks[key.second] += TumRow(human.utime, *T_W_H);
+    if (T_W_H) tracks[key.second].Add(human.utime, *T_W_H);
   }
   lines.Close();
   for (const auto& [id, rows] : tracks) {
     paths->push_back(folder + "/people/" + std::to_string(id.value) + ".tum");
     OutputFile file(paths->back());
-    file.Write(rows);
+    file.Write(rows.Text());
     file.Close();
   }
 }

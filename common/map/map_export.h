@@ -13,11 +13,15 @@ namespace airdos {
 /// Writes everything below into a folder, which is made if it is not there:
 /// - trajectory.tum: T_W_C as `t x y z qx qy qz qw` (s, m), refined where there is a refined pose;
 /// - trajectory_live.tum: T_W_C as estimated when each frame was the newest;
-/// - trajectory.kitti: as trajectory.tum in rows of 3 x 4; frames without a pose have no row;
+/// - trajectory.kitti: the same poses in rows of 3 x 4, all of them; frames without a pose have no
+///   row;
 /// - ground_truth.tum: if there is one; its axes are in the first line;
 /// - map.ply: static landmarks in W (m), binary little endian, with sigma_m and num_observations;
 /// - people.jsonl: one line per person and frame, in order of (frame, track);
 /// - people/<track>.tum: pose of each person's torso, see TorsoPose().
+///
+/// In files of times these go forward: poses whose time is not later than that of an image before
+/// are left out, and a comment in the first line says how many.
 ///
 /// Returns the paths. Throws InputError naming the file that cannot be written.
 std::vector<std::string> ExportMap(const FourDMap& map, const std::string& folder);

@@ -52,6 +52,13 @@ static_features_t ToMessage(const Header& header, std::int64_t odometry_start_se
   return message;
 }
 
+/// The frame has no pose, and nothing was looked at.
+static_features_t WithoutPose(const Header& header, std::int64_t odometry_start_seq) {
+  static_features_t message = ToMessage(header, odometry_start_seq, OdometryFrame());
+  message.tracking_state = static_features_t::STATE_INVALID;
+  return message;
+}
+
 void AddTo(const map_update_t& part, MapCorrection* correction) {
   for (const frame_pose_t& frame : part.frames) {
     correction->frames.emplace_back(FrameId{frame.seq},
@@ -78,6 +85,7 @@ FrontendNode::FrontendNode(const FrontendOptions& options)
   }
   if (options_.use_masks) Join<person_mask_t>(channel::kPersonMask, &FrontendInputs::mask);
   JoinCalibration();
+  DeclareOutput(channel::kStaticFeatures);
   if (options_.feedback_lag > 0) {
     Subscribe<map_update_t>(channel::kMapUpdate, [this](map_update_t&& message) {
       return ReceiveUpdate(std::move(message));
@@ -123,6 +131,10 @@ void FrontendNode::StartSession(const Header& header) {
   odometry_ = std::make_unique<VisualOdometry>(
       options_.odometry, LandmarkId{FirstRunningNumber(header.seq, kMostPerFrame)});
   first_ = header;
+  if (!session_ || *session_ != header.session) {
+    newest_utime_.reset();
+    watches_ = Watches();
+  }
   session_ = header.session;
   published_.clear();
   updates_.clear();
@@ -186,9 +198,12 @@ cv::Mat FrontendNode::Mask(const FrontendInputs& inputs) {
     const std::optional<cv::Mat> decoded = DecodeMask(*inputs.mask);
     if (Fits(decoded, channel::kPersonMask)) mask = *decoded;
   }
+  const std::vector<BodyKeypoints> people =
+      inputs.keypoints ? ToPeople(*inputs.keypoints) : std::vector<BodyKeypoints>();
+  if (!mask.empty()) watches_.input.AddMask(mask, people);
   if (mask.empty() && inputs.keypoints) {
-    mask = DrawBodyMask(ToPeople(*inputs.keypoints), {camera().width, camera().height},
-                        options_.min_keypoint_confidence);
+    mask =
+        DrawBodyMask(people, {camera().width, camera().height}, options_.min_keypoint_confidence);
   }
   if (mask.empty()) return mask;
   const int diameter = 2 * options_.mask_dilation_px + 1;
@@ -204,6 +219,11 @@ std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
   if (inputs.right) right = DecodeGray(*inputs.right);
   const bool has_right = inputs.right && Fits(right, channel::kCameraRight);
   if (!Fits(left, channel::kCameraLeft)) return std::nullopt;
+  // Images of other times are no pair, rectified or not; that is said of their numbers.
+  constexpr std::int64_t kMaxApart_us = 20000;
+  const bool is_pair = has_right && inputs.right->utime <= inputs.left->utime + kMaxApart_us &&
+                       inputs.left->utime <= inputs.right->utime + kMaxApart_us;
+  if (is_pair) watches_.input.AddPair(*left, *right);
   // A blank right image holds no corner: the landmarks are tracked in the left one alone.
   if (!has_right) right = cv::Mat::zeros(left->size(), CV_8UC1);
   return StereoImagePair{FrameId{header.seq},
@@ -214,8 +234,26 @@ std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
                          People(inputs)};
 }
 
-static_features_t FrontendNode::Track(const Header& header, const FrontendInputs& inputs) {
-  const std::optional<StereoImagePair> images = Images(header, inputs);
+void FrontendNode::WatchNumbers(const FrontendInputs& inputs) {
+  if (!inputs.left) return;
+  const Header left = HeaderOf(*inputs.left);
+  const StrayWatch& left_numbers = numbers_of(channel::kCameraLeft);
+  const auto watch = [&](const auto& partner, const char* channel, PartnerWatch* numbers) {
+    std::optional<Header> header;
+    if (partner) header = HeaderOf(*partner);
+    const std::string warning = numbers->Add(left, header, left_numbers, numbers_of(channel));
+    if (!warning.empty()) Warn(warning);
+  };
+  watch(inputs.right, channel::kCameraRight, &watches_.right);
+  if (options_.use_masks) watch(inputs.mask, channel::kPersonMask, &watches_.mask);
+  if (options_.use_people) {
+    watch(inputs.keypoints, channel::kPersonKeypointsLeft, &watches_.keypoints);
+  }
+  watches_.input.AddTime(left.utime);
+}
+
+static_features_t FrontendNode::Track(const Header& header,
+                                      const std::optional<StereoImagePair>& images) {
   const double time_s = static_cast<double>(header.utime - first_.utime) * 1e-6;
   return ToMessage(header, first_.seq,
                    images ? odometry_->Process(camera(), *images)
@@ -224,12 +262,19 @@ static_features_t FrontendNode::Track(const Header& header, const FrontendInputs
 
 void FrontendNode::ProcessFrame(const Header& header, FrontendInputs inputs) {
   ApplyUpdates();
-  static_features_t message = Track(header, inputs);
+  WatchNumbers(inputs);
+  std::optional<StereoImagePair> images = Images(header, inputs);
+  // Its time is that of another image: of a camera that counts otherwise, say.
+  const bool is_new = images || (newest_utime_ && header.utime > *newest_utime_);
+  static_features_t message = is_new ? Track(header, images) : WithoutPose(header, first_.seq);
   if (!Validate(message).empty()) {
     // Blind for so long that the motion before leads beyond all bounds: begin as after a restart.
     StartSession(header);
-    message = Track(header, inputs);
+    if (images) images->time_s = 0;
+    message = Track(header, images);
   }
+  if (is_new) newest_utime_ = header.utime;
+  for (const std::string& warning : watches_.input.TakeWarnings()) Warn(warning);
   Publish(channel::kStaticFeatures, message);
   published_.push_back(header.seq);
   if (published_.size() > static_cast<std::size_t>(std::max(options_.feedback_lag, 1))) {

@@ -17,7 +17,9 @@
 #include "airdos/static_features_t.hpp"
 #include "common/config/config_reader.h"
 #include "common/features/visual_odometry.h"
+#include "processes/frontend/input_watch.h"
 #include "processes/node/frame_node.h"
+#include "processes/node/partner_watch.h"
 
 namespace airdos {
 
@@ -47,7 +49,9 @@ struct FrontendInputs {
 /// PERSON_MASK (if masks are used), HUMAN_OBSERVATIONS and PERSON_KEYPOINTS_LEFT (if people are
 /// used) and MAP_UPDATE in, STATIC_FEATURES out. The optimizer's corrections are applied at a fixed
 /// lag of frames, so that the result does not depend on how fast the optimizer is. A frame without
-/// its right image is tracked, but makes no landmarks; one without its left image coasts.
+/// its right image is tracked, but makes no landmarks; one without its left image coasts, if it is
+/// later than the one before. Else, and before the first left image of a session, it has no pose
+/// (STATE_INVALID). It watches its input and warns of what is doubtful.
 class FrontendNode : public FrameNode<FrontendInputs> {
  public:
   explicit FrontendNode(const FrontendOptions& options);
@@ -56,9 +60,17 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   std::vector<std::string> MissingFeedback(const Header& header) const override;
   void StartSession(const Header& header) override;
   void ProcessFrame(const Header& header, FrontendInputs inputs) override;
-  static_features_t Track(const Header& header, const FrontendInputs& inputs);
+  /// Coasts without images.
+  static_features_t Track(const Header& header, const std::optional<StereoImagePair>& images);
 
  private:
+  /// What is watched of one session.
+  struct Watches {
+    InputWatch input;
+    PartnerWatch right{channel::kCameraRight, "right image", false};
+    PartnerWatch mask{channel::kPersonMask, "person mask", true};
+    PartnerWatch keypoints{channel::kPersonKeypointsLeft, "keypoints", true};
+  };
   std::string ReceiveUpdate(map_update_t&& message);
   /// Frame whose update must be there before the next frame starts.
   std::optional<std::int64_t> RequiredUpdate() const;
@@ -68,10 +80,13 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   /// Where people are, from masks, or else from keypoints; empty if nothing says.
   cv::Mat Mask(const FrontendInputs& inputs);
   std::optional<StereoImagePair> Images(const Header& header, const FrontendInputs& inputs);
+  void WatchNumbers(const FrontendInputs& inputs);
 
   const FrontendOptions options_;
   std::unique_ptr<VisualOdometry> odometry_;
-  Header first_;  // of the session
+  Header first_;                              // of the session, or since it had to begin again
+  std::optional<std::int64_t> newest_utime_;  // of a frame that has a pose
+  Watches watches_;
   std::optional<std::int64_t> session_;
   std::vector<std::int64_t>
       published_;  // image numbers of the last feedback_lag frames, oldest first

@@ -56,9 +56,11 @@ HumanTrackerNode::HumanTrackerNode(const HumanTrackerOptions& options)
   Join(channel::kPersonKeypointsLeft, &HumanTrackerInputs::left_keypoints);
   Join(channel::kPersonKeypointsRight, &HumanTrackerInputs::right_keypoints);
   JoinCalibration();
+  DeclareOutput(channel::kHumanObservations);
 }
 
 void HumanTrackerNode::StartSession(const Header& header) {
+  watches_ = Watches();
   constexpr std::int64_t kMostPerFrame = 1000;  // Validate() lets 200 people an image pass
   tracker_ = std::make_unique<HumanTracker>(options_,
                                             HumanId{FirstRunningNumber(header.seq, kMostPerFrame)});
@@ -70,6 +72,25 @@ bool HumanTrackerNode::Fits(const std::optional<cv::Mat>& image, const char* cha
   counters(channel).last_reject =
       image ? "its size is not that of the calibration" : "the image does not decode";
   return false;
+}
+
+void HumanTrackerNode::WatchKeypoints(const HumanTrackerInputs& inputs, const PeopleFrame& frame) {
+  if (!inputs.left_image) return;
+  const Header image = HeaderOf(*inputs.left_image);
+  const auto watch = [&](const std::optional<person_keypoints_t>& keypoints, const char* channel,
+                         PartnerWatch* numbers) {
+    std::optional<Header> header;
+    if (keypoints) header = HeaderOf(*keypoints);
+    return numbers->Add(image, header, numbers_of(channel::kCameraLeft), numbers_of(channel));
+  };
+  for (const std::string& warning :
+       {watch(inputs.left_keypoints, channel::kPersonKeypointsLeft, &watches_.left),
+        watch(inputs.right_keypoints, channel::kPersonKeypointsRight, &watches_.right),
+        inputs.left_keypoints && inputs.right_keypoints
+            ? watches_.people.Add(frame.left, frame.right)
+            : std::string()}) {
+    if (!warning.empty()) Warn(warning);
+  }
 }
 
 void HumanTrackerNode::ProcessFrame(const Header& header, HumanTrackerInputs inputs) {
@@ -88,6 +109,7 @@ void HumanTrackerNode::ProcessFrame(const Header& header, HumanTrackerInputs inp
   frame.left = PeopleOf(inputs.left_keypoints);
   frame.right = PeopleOf(inputs.right_keypoints);
 
+  WatchKeypoints(inputs, frame);
   const TrackedFrame tracked = tracker_->Process(camera(), frame);
 
   human_observations_t message{};

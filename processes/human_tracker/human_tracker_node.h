@@ -9,7 +9,9 @@
 #include "airdos/person_keypoints_t.hpp"
 #include "common/config/config_reader.h"
 #include "common/human/human_tracker.h"
+#include "processes/human_tracker/people_watch.h"
 #include "processes/node/frame_node.h"
+#include "processes/node/partner_watch.h"
 
 namespace airdos {
 
@@ -22,7 +24,8 @@ struct HumanTrackerInputs {
 
 /// CAMERA_LEFT, CAMERA_RIGHT, PERSON_KEYPOINTS_LEFT, PERSON_KEYPOINTS_RIGHT -> HUMAN_OBSERVATIONS:
 /// one message a frame, empty if nobody was found. An image that is missing, does not decode or has
-/// another size than the calibration says is done without; so are keypoints.
+/// another size than the calibration says is done without; so are keypoints. It watches the
+/// keypoints and warns of what is doubtful.
 class HumanTrackerNode : public FrameNode<HumanTrackerInputs> {
  public:
   explicit HumanTrackerNode(const HumanTrackerOptions& options);
@@ -32,11 +35,19 @@ class HumanTrackerNode : public FrameNode<HumanTrackerInputs> {
   void ProcessFrame(const Header& header, HumanTrackerInputs inputs) override;
 
  private:
+  /// What is watched of one session.
+  struct Watches {
+    PartnerWatch left{channel::kPersonKeypointsLeft, "keypoints of the left image", true};
+    PartnerWatch right{channel::kPersonKeypointsRight, "keypoints of the right image", true};
+    PeopleWatch people;
+  };
+  void WatchKeypoints(const HumanTrackerInputs& inputs, const PeopleFrame& frame);
   /// Whether the image has the size that the calibration says; counts a reject otherwise.
   bool Fits(const std::optional<cv::Mat>& image, const char* channel);
 
   HumanTrackerOptions options_;
   std::unique_ptr<HumanTracker> tracker_;
+  Watches watches_;
 };
 
 /// Reads the options of launch_scripts/config/human_tracker.yaml; Finish() is left to the caller.

@@ -173,6 +173,8 @@ void MapRecorderNode::Finish() {
 void MapRecorderNode::StartSession(const Header& header) {
   if (file_ != nullptr) CloseSession();
   session_ = header.session;
+  newest_pose_.reset();
+  is_time_said_ = false;
   if (num_sessions_ >= kMaxSessions) {
     throw InputError(options_.directory + ": session " + std::to_string(session_) +
                      " is not recorded: there were " + std::to_string(kMaxSessions) + " before it");
@@ -244,13 +246,30 @@ void MapRecorderNode::NoteGroundTruth() {
 void MapRecorderNode::ProcessFrame(const Header& header, MapRecorderInputs inputs) {
   if (file_ == nullptr) return;  // the disk failed
   const bool has_pose = inputs.state && inputs.state->status != state_estimate_t::STATUS_INVALID;
-  if (has_pose) changes_.SetFrame({header.seq}, ToMapFrame(*inputs.state));
+  if (has_pose) {
+    changes_.SetFrame({header.seq}, ToMapFrame(*inputs.state));
+    WatchTime(header);
+  }
   for (const map_update_t& update : inputs.updates) {
     AddUpdate(update, &changes_);
     if (changes_.ApproximateBytes() > kLargeChunkBytes) WriteChunk();
   }
   TakeOldGroundTruth(header.seq);
   if (++num_frames_in_chunk_ >= options_.chunk_frames) WriteChunk();
+}
+
+void MapRecorderNode::WatchTime(const Header& header) {
+  const bool goes_back = newest_pose_ && header.utime <= newest_pose_->utime;
+  if (!goes_back) {
+    newest_pose_ = header;
+    return;
+  }
+  if (is_time_said_) return;
+  is_time_said_ = true;
+  Warn("times go back: image " + std::to_string(header.seq) + " is not later than image " +
+       std::to_string(newest_pose_->seq) + " (utime " + std::to_string(header.utime) + " and " +
+       std::to_string(newest_pose_->utime) +
+       "); the map has such poses, the trajectory files leave them out");
 }
 
 // The newest one stays: the end of the map needs its axes.

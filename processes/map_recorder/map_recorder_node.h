@@ -92,6 +92,8 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   void NoteGroundTruth();
   void TakeOldGroundTruth(std::int64_t seq);
   void SetGroundTruth(const std::pair<const std::int64_t, GroundTruth>& pose);
+  /// Warns where times do not go on.
+  void WatchTime(const Header& header);
   void Append(const MapChunk& chunk);
   void WriteChunk();
   void CloseSession();
@@ -102,7 +104,9 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   std::int64_t session_ = 0;
   std::unique_ptr<MapFileWriter> file_;  // none before the first frame and after a failure
   std::string failure_;                  // why nothing more could be written; empty if all was
-  MapDelta changes_;                     // of the open chunk
+  std::optional<Header> newest_pose_;    // in time, of the session
+  bool is_time_said_ = false;
+  MapDelta changes_;  // of the open chunk
   int num_frames_in_chunk_ = 0;
 
   // By session, then image number.

@@ -62,8 +62,11 @@ FrameJoiner::Arrival FrameJoiner::Announce(int input, const Header& header, Key*
 
   auto [it, is_new] = pending_.try_emplace(*key);
   if (is_new) {
-    it->second.header = header;
     it->second.arrived.assign(num_inputs_, false);
+  }
+  if (is_new || slot < it->second.header_input) {
+    it->second.header = header;
+    it->second.header_input = slot;
   }
   return it->second.arrived[slot] ? Arrival::kDuplicate : Arrival::kNew;
 }

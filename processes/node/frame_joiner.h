@@ -41,7 +41,7 @@ class FrameJoiner {
   static constexpr std::size_t kMaxSessions = 1000;
   struct Frame {
     Key key;
-    Header header;
+    Header header;  ///< of the first input that has arrived: which one was faster is no matter
     std::vector<int> missing;  ///< inputs that have not arrived
     std::vector<int> awaited;  ///< of these, the ones that have not been overtaken
     bool settled = false;
@@ -68,6 +68,7 @@ class FrameJoiner {
  private:
   struct Pending {
     Header header;
+    std::size_t header_input = 0;  // whose it is
     std::vector<bool> arrived;
   };
 

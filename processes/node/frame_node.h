@@ -17,6 +17,7 @@
 #include "processes/node/conversions.h"
 #include "processes/node/frame_joiner.h"
 #include "processes/node/node.h"
+#include "processes/node/stray_watch.h"
 
 namespace airdos {
 
@@ -35,6 +36,8 @@ class FrameNode : public Node {
   /// beyond it (dropped, in realtime pace), so memory stays bounded.
   static constexpr std::size_t kMaxPending = 1000;
   static constexpr std::size_t kMaxPendingBytes = 512u << 20;
+  /// So many frames may come before their calibration, which some say once a second.
+  static constexpr int kPatienceForCalibration = 40;
   /// Sessions whose calibration is kept; beyond it the one that was heard first is forgotten.
   static constexpr std::size_t kMaxCalibrations = 100;
 
@@ -94,8 +97,8 @@ class FrameNode : public Node {
   template <class Message>
   void Join(const std::string& channel, std::optional<Message> Inputs::*field) {
     const int input = AddInput(channel);
-    Subscribe<Message>(channel, [this, input, channel, field](Message&& message) {
-      return Arrived(input, channel, HeaderOf(message),
+    Subscribe<Message>(channel, [this, input, field](Message&& message) {
+      return Arrived(input, HeaderOf(message),
                      [&](Inputs& inputs) { inputs.*field = std::move(message); });
     });
   }
@@ -107,14 +110,14 @@ class FrameNode : public Node {
   void JoinParts(const std::string& channel, std::vector<Message> Inputs::*field) {
     const int input = AddInput(channel);
     const auto set = std::make_shared<PartSet<Message>>();
-    Subscribe<Message>(channel, [this, input, channel, field, set](Message&& message) {
+    Subscribe<Message>(channel, [this, input, field, set](Message&& message) {
       const Header header = HeaderOf(message);
       FrameJoiner::Key key;
       const FrameJoiner::Arrival arrival = Joiner().Announce(input, header, &key);
-      if (arrival != FrameJoiner::Arrival::kNew) return Refused(arrival, channel, header);
+      if (arrival != FrameJoiner::Arrival::kNew) return Refused(arrival, input, header);
       if (set->parts.empty() || set->key < key || key < set->key) *set = {key, {}};
       return AddPart(std::move(message), set.get(), [&](std::vector<Message>&& parts) {
-        Arrived(input, channel, header, [&](Inputs& inputs) { inputs.*field = std::move(parts); });
+        Arrived(input, header, [&](Inputs& inputs) { inputs.*field = std::move(parts); });
       });
     });
   }
@@ -142,6 +145,14 @@ class FrameNode : public Node {
   /// what it published is dropped and it is called again, with nothing in `inputs`, as others wait
   /// for that output; then the exception goes on to whoever called Step() or CompleteOldest().
   virtual void ProcessFrame(const Header& header, Inputs inputs) = 0;
+
+  /// Numbers that came on a channel that was joined.
+  const StrayWatch& numbers_of(const std::string& channel) const {
+    const auto& names = channels_of_inputs_;
+    const auto place = std::find(names.begin(), names.end(), channel);
+    AIRDOS_CHECK(place != names.end());
+    return watches_[static_cast<std::size_t>(place - names.begin())];
+  }
 
   /// Calibration of the frame in work.
   const StereoCamera& camera() const { return camera_; }
@@ -178,6 +189,7 @@ class FrameNode : public Node {
   int AddInput(const std::string& channel) {
     AIRDOS_CHECK(joiner_ == nullptr);
     channels_of_inputs_.push_back(channel);
+    watches_.emplace_back(channel, watches_.empty());
     return static_cast<int>(channels_of_inputs_.size()) - 1;
   }
 
@@ -190,10 +202,15 @@ class FrameNode : public Node {
   }
 
   template <class Fill>
-  std::string Arrived(int input, const std::string& channel, const Header& header, Fill fill) {
+  std::string Arrived(int input, const Header& header, Fill fill) {
     FrameJoiner::Key key;
     const FrameJoiner::Arrival arrival = Joiner().Add(input, header, &key);
-    if (arrival != FrameJoiner::Arrival::kNew) return Refused(arrival, channel, header);
+    if (arrival != FrameJoiner::Arrival::kNew) return Refused(arrival, input, header);
+    watches_[static_cast<std::size_t>(input)].AddNew(header);
+    if (input == 0 && !HasCalibration(header)) {
+      if (num_uncalibrated_ < kPatienceForCalibration) ++num_uncalibrated_;
+      if (num_uncalibrated_ == kPatienceForCalibration) WarnOfCalibration(header.session);
+    }
     Slot& slot = inputs_[key];
     slot.num_bytes += num_bytes_received();
     num_pending_bytes_ += num_bytes_received();
@@ -226,17 +243,30 @@ class FrameNode : public Node {
     calibrated_.pop_front();
   }
 
-  std::string Refused(FrameJoiner::Arrival arrival, const std::string& channel,
-                      const Header& header) {
+  std::string Refused(FrameJoiner::Arrival arrival, int input, const Header& header) {
     if (arrival == FrameJoiner::Arrival::kTooFar) {
       return "seq " + std::to_string(header.seq) + " is far beyond the one before";
     }
-    ++counters(channel).num_duplicate;
+    const auto slot = static_cast<std::size_t>(input);
+    ++counters(channels_of_inputs_[slot]).num_duplicate;
+    const std::string warning = watches_[slot].AddRefused(header);
+    if (!warning.empty()) Warn(warning);
     return "";
   }
 
   bool HasCalibration(const Header& header) const {
     return !needs_calibration_ || calibrations_.count(header.session) > 0;
+  }
+
+  void WarnOfCalibration(std::int64_t session) {
+    if (uncalibrated_said_ == session) return;
+    uncalibrated_said_ = session;
+    std::string others;
+    if (!calibrated_.empty()) {
+      others = "; there is one for session " + std::to_string(calibrated_.back());
+    }
+    Warn("no CALIBRATION yet for session " + std::to_string(session) +
+         ": no pose will come until it does" + others);
   }
 
   void Work(const FrameJoiner::Frame& frame) {
@@ -251,7 +281,11 @@ class FrameNode : public Node {
       ++counters(channels_of_inputs_[static_cast<std::size_t>(input)]).num_missing;
     }
     if (!frame.missing.empty() || !HasCalibration(frame.header)) ++mutable_frames().num_incomplete;
-    if (!HasCalibration(frame.header)) return;  // without it no pixel has a meaning
+    if (!HasCalibration(frame.header)) {  // without it no pixel has a meaning
+      WarnOfCalibration(frame.header.session);
+      return;
+    }
+    num_uncalibrated_ = 0;
     ++mutable_frames().num_done;
     if (needs_calibration_) camera_ = calibrations_.at(frame.header.session);
     if (!session_ || *session_ != frame.header.session) {
@@ -270,6 +304,7 @@ class FrameNode : public Node {
   }
 
   std::vector<std::string> channels_of_inputs_;
+  std::vector<StrayWatch> watches_;  // of each input
   std::unique_ptr<FrameJoiner> joiner_;
   std::map<FrameJoiner::Key, Slot> inputs_;
   std::size_t num_pending_bytes_ = 0;
@@ -278,6 +313,8 @@ class FrameNode : public Node {
   std::deque<std::int64_t> calibrated_;                // their sessions, first heard first
   StereoCamera camera_;
   std::optional<std::int64_t> session_;
+  int num_uncalibrated_ = 0;  // frames in a row that came without
+  std::optional<std::int64_t> uncalibrated_said_;
 };
 
 }  // namespace airdos

@@ -54,15 +54,54 @@ void LcmRunner::Start() {
           node_->Receive(channel, data, size);
           last_receive_utime_ = receive_utime;
           SayFirstRejects();
+          SayWarnings();
         });
   }
+  for (const std::string& channel : node_->output_channels()) {
+    transport_->Subscribe(channel,
+                          [this, channel](const void* data, std::size_t size, std::int64_t) {
+                            HearOwnChannel(channel, data, size);
+                          });
+  }
+  transport_->Subscribe(channel::kStatus, [this](const void* data, std::size_t size, std::int64_t) {
+    HearStatus(data, size);
+  });
+}
+
+bool LcmRunner::MustStop() const { return StopRequested() || has_refused(); }
+
+void LcmRunner::HearOwnChannel(const std::string& channel, const void* data, std::size_t size) {
+  if (!own_output_.IsForeign(channel, data, size)) return;
+  ++num_foreign_;
+  if (num_foreign_ == 1) {
+    SayError("somebody else publishes " + channel +
+             ": a log that also holds outputs is being played, or a second " + options_.process +
+             " runs; play only the inputs (replay_log.sh does; airdos-record --inputs-only records "
+             "nothing else), or end the other one");
+  } else if (has_refused()) {
+    SayError("refuses to go on: somebody else publishes " + channel);
+  }
+}
+
+void LcmRunner::HearStatus(const void* data, std::size_t size) {
+  constexpr std::size_t kMaxNamesakes = 100;
+  process_status_t status = {};
+  if (!Decode(data, size, &status) || !Validate(status).empty()) return;
+  const bool is_alive = status.state == process_status_t::STATE_READY ||
+                        status.state == process_status_t::STATE_STALLED;
+  if (!is_alive || status.process != options_.process || status.pid == getpid()) return;
+  if (namesakes_.size() >= kMaxNamesakes && namesakes_.count(status.pid) == 0) return;
+  // The last word of one that was killed may still have been on its way.
+  if (++namesakes_[status.pid] != 2) return;
+  SayWarning("another " + options_.process + " runs, process " + std::to_string(status.pid) +
+             ": both work on the same input; end one of them");
 }
 
 void LcmRunner::Run() {
   cpu_at_start_ms_ = CpuTime_ms();
   progress_s_ = SteadyClock_s();
   bool has_worked = false;
-  while (!StopRequested()) {
+  while (!MustStop()) {
     PublishStatusWhenDue();
     Receive(has_worked ? 0 : kPollTimeout_ms);
     has_worked = WorkOnFrames();
@@ -78,7 +117,7 @@ void LcmRunner::Receive(int timeout_ms) {
   // made the frame complete.
   if (!Poll(timeout_ms) || !is_realtime) return;
   // Bounded: whoever floods a channel must not keep the process from its work.
-  for (int i = 0; i < kMaxDrained && !StopRequested() && transport_->Poll(0); ++i) {
+  for (int i = 0; i < kMaxDrained && !MustStop() && transport_->Poll(0); ++i) {
   }
   node_->SkipToNewest();
 }
@@ -96,7 +135,7 @@ bool LcmRunner::WorkOnFrames() {
   // In realtime one at a time: there may be newer ones by now.
   if (options_.pace == LcmRunnerOptions::Pace::kRealtime) return WorkOnOne();
   bool has_worked = false;
-  while (!StopRequested() && WorkOnOne()) {
+  while (!MustStop() && WorkOnOne()) {
     has_worked = true;
     PublishStatusWhenDue();
   }
@@ -169,7 +208,9 @@ void LcmRunner::CompleteAfterDeadline() {
 
 void LcmRunner::PublishOutput() {
   SayFirstRejects();  // some messages are only rejected when their frame is worked on
+  SayWarnings();
   for (const Envelope& message : node_->TakeOutput()) {
+    own_output_.AddSaid(message.channel, message.payload.data(), message.payload.size());
     PublishBytes(message.channel, message.payload);
   }
   const double latency_ms =
@@ -218,6 +259,9 @@ void LcmRunner::PublishStatus(std::int8_t state) {
   status.memory_mb = ResidentMemory_mb();
   status.waiting_for = node_->waiting_for();
   status.last_error = last_error_;
+  status.warnings.assign(node_->warnings().begin(), node_->warnings().end());
+  status.warnings.insert(status.warnings.end(), own_warnings_.begin(), own_warnings_.end());
+  status.num_warnings = static_cast<std::int32_t>(status.warnings.size());
   for (const auto& [channel, counters] : node_->channels()) {
     status.channels.push_back(StatusOf(channel, counters));
   }
@@ -242,6 +286,19 @@ void LcmRunner::SayError(const std::string& error) {
   last_error_ = error.substr(0, 500);          // STATUS takes no text that is much longer
   if (errors_said_.size() < kMaxErrorsSaid && errors_said_.insert(error).second) {
     Say("error: " + error + " (said once; STATUS has the last error)");
+  }
+}
+
+void LcmRunner::SayWarning(const std::string& warning) {
+  own_warnings_.push_back(warning);
+  if (own_warnings_.size() > Node::kMaxWarnings) own_warnings_.pop_front();
+  Say("warning: " + warning);
+}
+
+void LcmRunner::SayWarnings() {
+  constexpr int kMaxWarningsSaid = 100;  // stderr may go to a disk
+  for (const std::string& warning : node_->TakeWarnings()) {
+    if (++num_warnings_said_ <= kMaxWarningsSaid) Say("warning: " + warning);
   }
 }
 

@@ -2,6 +2,7 @@
 #define AIRDOS_PROCESSES_NODE_LCM_RUNNER_H_
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <ostream>
 #include <set>
@@ -9,6 +10,7 @@
 
 #include "processes/node/lcm_transport.h"
 #include "processes/node/node.h"
+#include "processes/node/own_output.h"
 #include "processes/node/process_usage.h"
 
 namespace airdos {
@@ -28,12 +30,19 @@ struct LcmRunnerOptions {
   bool publishes_frame_done = false;  ///< says FRAME_DONE after each frame
 };
 
-/// Runs one node behind LCM until SIGINT or SIGTERM: hands in what arrives, publishes what comes
-/// out, says STATUS once a second. All knowledge of clocks and of the network is here.
+/// Runs one node behind LCM until SIGINT, SIGTERM or SIGHUP: hands in what arrives, publishes what
+/// comes out, says STATUS once a second and what the node warns of at once. All knowledge of clocks
+/// and of the network is here.
+///
+/// Each channel has one publisher. Where somebody else speaks on a channel of the node, whoever
+/// hears both gets results of two minds: it says so, and after kMaxForeign messages refuses to go
+/// on.
 class LcmRunner {
  public:
   /// Messages that are taken in at once, in realtime pace, before the next frame is worked on.
   static constexpr int kMaxDrained = 1000;
+  /// Messages of somebody else on the node's output channels that end the run.
+  static constexpr int kMaxForeign = 3;
 
   /// Neither is owned. `log` takes what people are to read, one line each.
   LcmRunner(Node* node, LcmTransport* transport, const LcmRunnerOptions& options,
@@ -41,8 +50,9 @@ class LcmRunner {
 
   /// Subscribes; from its return on every message is heard. Throws as LcmTransport does.
   void Start();
-  /// Works until StopRequested().
+  /// Works until StopRequested(), or until it refuses to go on.
   void Run();
+  bool has_refused() const { return num_foreign_ >= kMaxForeign; }
 
  private:
   void Receive(int timeout_ms);
@@ -58,6 +68,13 @@ class LcmRunner {
   void PublishStatus(std::int8_t state);
   void PublishStatusWhenDue();
   void Say(const std::string& line);
+  /// Warns, on stderr and in STATUS.
+  void SayWarning(const std::string& warning);
+  void SayWarnings();
+  void HearOwnChannel(const std::string& channel, const void* data, std::size_t size);
+  /// Another process of the same name?
+  void HearStatus(const void* data, std::size_t size);
+  bool MustStop() const;
   void SayError(const std::string& error);
   /// Says which channel has rejected a message for the first time, and why.
   void SayFirstRejects();
@@ -79,6 +96,11 @@ class LcmRunner {
   std::set<std::string> rejects_said_;  // channels; later rejects are counted in STATUS only
   std::map<std::string, std::int64_t> silent_;  // channels, and how much had come on them by then
   std::set<std::string> errors_said_;
+  int num_warnings_said_ = 0;
+  std::deque<std::string> own_warnings_;  // of this runner; the node keeps its own
+  OwnOutput own_output_;
+  int num_foreign_ = 0;
+  std::map<std::int64_t, int> namesakes_;  // how often each was heard, by pid
   bool is_stalled_ = false;
   bool publish_failure_said_ = false;
   std::string last_error_;

@@ -19,7 +19,8 @@ namespace airdos {
 /// $LCM_DEFAULT_URL, else multicast that does not leave this machine.
 std::string DefaultLcmUrl();
 
-/// From here on SIGINT and SIGTERM only set what StopRequested() tells, and interrupt Poll().
+/// From here on SIGINT and SIGTERM, and SIGHUP unless it is ignored, only set what StopRequested()
+/// tells, and interrupt Poll().
 void InstallStopSignals();
 bool StopRequested();
 

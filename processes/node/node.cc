@@ -3,6 +3,11 @@
 #include <exception>
 
 namespace airdos {
+namespace {
+
+constexpr std::size_t kMaxTextBytes = 500;  // STATUS takes no text that is much longer
+
+}  // namespace
 
 std::vector<std::string> Node::input_channels() const {
   std::vector<std::string> names;
@@ -24,8 +29,18 @@ void Node::Receive(const std::string& channel, const void* data, std::size_t siz
   }
   if (reason.empty()) return;
   ++counters.num_rejected;
-  counters.last_reject = reason.substr(0, 500);  // STATUS takes no text that is much longer
+  counters.last_reject = reason.substr(0, kMaxTextBytes);
 }
+
+void Node::Warn(const std::string& warning) {
+  const std::string text = warning.substr(0, kMaxTextBytes);
+  warnings_.push_back(text);
+  if (warnings_.size() > kMaxWarnings) warnings_.pop_front();
+  // Bounded as well, for owners who never ask.
+  if (new_warnings_.size() < kMaxWarnings) new_warnings_.push_back(text);
+}
+
+std::vector<std::string> Node::TakeWarnings() { return std::exchange(new_warnings_, {}); }
 
 std::vector<Envelope> Node::TakeOutput() { return std::exchange(output_, {}); }
 

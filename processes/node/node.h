@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -42,6 +43,9 @@ struct FrameCounters {
 /// channels carried, not on how they interleaved.
 class Node {
  public:
+  /// Warnings that are kept; the oldest go first.
+  static constexpr std::size_t kMaxWarnings = 20;
+
   explicit Node(std::string name) : name_(std::move(name)) {}
   virtual ~Node() = default;
   Node(const Node&) = delete;
@@ -49,6 +53,8 @@ class Node {
 
   const std::string& name() const { return name_; }
   std::vector<std::string> input_channels() const;
+  /// What it publishes; nobody else may publish there.
+  const std::vector<std::string>& output_channels() const { return output_channels_; }
   /// False for input channels that bring what holds for more than a frame, or what others made of
   /// earlier frames: those can close a circle of nodes.
   virtual bool MakesUpFrames(const std::string& /*channel*/) const { return true; }
@@ -75,6 +81,12 @@ class Node {
   /// What was published since the last call, in order.
   std::vector<Envelope> TakeOutput();
 
+  /// What of the input is doubtful, for people: one line each, what it is and what to do. Those
+  /// since the last call, and the newest kMaxWarnings of all. Like all else they depend on what
+  /// came, not on when.
+  std::vector<std::string> TakeWarnings();
+  const std::deque<std::string>& warnings() const { return warnings_; }
+
   const std::map<std::string, ChannelCounters>& channels() const { return channels_; }
   const FrameCounters& frames() const { return frames_; }
   /// The frame that Step() or CompleteOldest() worked on last; nothing before the first one.
@@ -94,6 +106,11 @@ class Node {
       return reason.empty() ? handler(std::move(message)) : reason;
     };
   }
+
+  /// For the constructor: names a channel that the node publishes.
+  void DeclareOutput(const std::string& channel) { output_channels_.push_back(channel); }
+
+  void Warn(const std::string& warning);
 
   template <class Message>
   void Publish(const std::string& channel, const Message& message) {
@@ -119,6 +136,9 @@ class Node {
   FrameCounters frames_;
   std::optional<Header> last_finished_;
   std::vector<Envelope> output_;
+  std::vector<std::string> output_channels_;
+  std::deque<std::string> warnings_;
+  std::vector<std::string> new_warnings_;
   std::size_t num_bytes_received_ = 0;
 };
 

@@ -29,7 +29,7 @@ int Run(const ProcessInfo& info, const CommonArguments& arguments, LcmRunnerOpti
             << " config " << arguments.config_file << std::endl;
   runner.Run();
   node->Finish();
-  return 0;
+  return runner.has_refused() ? 1 : 0;
 }
 
 }  // namespace

@@ -20,8 +20,9 @@ struct ProcessInfo {
   bool publishes_frame_done = false;
 };
 
-/// The whole main of a process that is one node: options, node, LCM, until SIGINT or SIGTERM.
-/// Returns the exit code: 2 for a wrong option, file, key or URL, after one line on stderr.
+/// The whole main of a process that is one node: options, node, LCM, until SIGINT, SIGTERM or
+/// SIGHUP. Returns the exit code: 2 for a wrong option, file, key or URL, after one line on stderr;
+/// 1 where it refused to go on.
 int RunNodeProcess(int argc, char** argv, const ProcessInfo& info);
 
 }  // namespace airdos

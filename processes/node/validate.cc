@@ -21,6 +21,7 @@ constexpr int kMaxLandmarks = 20000;
 constexpr int kMaxParts = 64;
 constexpr int kMaxFrames = 1000;
 constexpr int kMaxChannels = 100;
+constexpr int kMaxWarnings = 100;
 constexpr std::size_t kMaxTextBytes = 1000;
 constexpr double kMaxPixel = 1e5;
 constexpr double kMinSigma_px = 1e-4;  // its inverse square must not swallow all other weights
@@ -231,7 +232,7 @@ std::string Validate(const person_mask_t& message) {
 
 std::string Validate(const static_features_t& message) {
   Checker check(message);
-  check.Range("tracking_state", message.tracking_state, static_features_t::STATE_INITIALIZING,
+  check.Range("tracking_state", message.tracking_state, static_features_t::STATE_INVALID,
               static_features_t::STATE_COASTING);
   check.Position("position_O_C", message.position_O_C);
   check.Quaternion("orientation_O_C", message.orientation_O_C);
@@ -245,6 +246,9 @@ std::string Validate(const static_features_t& message) {
   check.Count("num_masked", message.num_masked, INT32_MAX);
   check.Count("num_matched", message.num_matched, INT32_MAX);
   check.Count("num_features", message.num_features, kMaxFeatures);
+  if (message.tracking_state == static_features_t::STATE_INVALID && message.num_features > 0) {
+    check.Fail("num_features", message.num_features, "must be 0 where nothing was tracked");
+  }
   check.Ranges("landmark_id", message.landmark_id, 0, kMaxInt64);
   check.Ranges("u_left_px", message.u_left_px, -kMaxPixel, kMaxPixel);
   check.Ranges("v_px", message.v_px, -kMaxPixel, kMaxPixel);
@@ -317,6 +321,14 @@ std::string Validate(const map_update_t& message) {
   check.Ranges("removed_landmark_id", message.removed_landmark_id, 0, kMaxInt64);
   check.Count("num_humans", message.num_humans, kMaxPeople);
   for (const human_state_t& human : message.humans) CheckHuman(human, &check);
+  check.Count("num_repeated", message.num_repeated, kMaxLandmarks);
+  check.Ranges("repeated_landmark_id", message.repeated_landmark_id, 0, kMaxInt64);
+  for (const auto* coordinates :
+       {&message.repeated_x_W_m, &message.repeated_y_W_m, &message.repeated_z_W_m}) {
+    check.Ranges("repeated landmark's coordinate", *coordinates, -kMaxLength_m, kMaxLength_m);
+  }
+  check.Positive("repeated_sigma_m", message.repeated_sigma_m);
+  check.Ranges("repeated_num_observations", message.repeated_num_observations, 0, INT32_MAX);
   return check.reason();
 }
 
@@ -353,6 +365,8 @@ std::string Validate(const process_status_t& message) {
                               message.cpu_ms_per_frame, message.memory_mb}) {
     check.Range("a latency, load or memory", figure, 0, 1e15);
   }
+  check.Count("num_warnings", message.num_warnings, kMaxWarnings);
+  for (const std::string& warning : message.warnings) check.Text("a warning", warning);
   check.Count("num_channels", message.num_channels, kMaxChannels);
   for (const channel_status_t& channel : message.channels) {
     check.Text("a channel", channel.channel);

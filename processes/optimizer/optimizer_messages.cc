@@ -177,6 +177,16 @@ class PartWriter {
     part.num_observations.push_back(landmark.num_observations);
     ++part.num_landmarks;
   }
+  void AddRepeated(const MapChanges::Landmark& landmark) {
+    map_update_t& part = PartWithRoom(40);
+    part.repeated_landmark_id.push_back(landmark.id.value);
+    part.repeated_x_W_m.push_back(landmark.p_W.x());
+    part.repeated_y_W_m.push_back(landmark.p_W.y());
+    part.repeated_z_W_m.push_back(landmark.p_W.z());
+    part.repeated_sigma_m.push_back(static_cast<float>(landmark.sigma_m));
+    part.repeated_num_observations.push_back(landmark.num_observations);
+    ++part.num_repeated;
+  }
   void Add(LandmarkId removed) {
     map_update_t& part = PartWithRoom(8);
     part.removed_landmark_id.push_back(removed.value);
@@ -276,12 +286,14 @@ state_estimate_t UnknownStateEstimate(const Header& header) {
   return message;
 }
 
-std::vector<map_update_t> ToMapUpdates(const Header& header, const MapChanges& changes) {
+std::vector<map_update_t> ToMapUpdates(const Header& header, const MapChanges& changes,
+                                       const std::vector<MapChanges::Landmark>& repeated) {
   PartWriter writer(header);
   for (const MapChanges::FramePose& frame : changes.frames) writer.Add(frame);
   for (const MapChanges::Landmark& landmark : changes.landmarks) writer.Add(landmark);
   for (const LandmarkId id : changes.removed) writer.Add(id);
   for (const HumanState& human : changes.humans) writer.Add(ToHumanState(human));
+  for (const MapChanges::Landmark& landmark : repeated) writer.AddRepeated(landmark);
   return writer.Finish();
 }
 

@@ -24,8 +24,10 @@ state_estimate_t ToStateEstimate(const Header& header, const FrameEstimate& esti
 /// Of a frame for which there is no pose, since the front end has not been heard yet.
 state_estimate_t UnknownStateEstimate(const Header& header);
 
-/// At least one part; each encodes to less than 120 kB (README of lcmtypes: why).
-std::vector<map_update_t> ToMapUpdates(const Header& header, const MapChanges& changes);
+/// At least one part; each encodes to less than 120 kB (README of lcmtypes: why). `repeated` are
+/// landmarks of earlier frames that are told again.
+std::vector<map_update_t> ToMapUpdates(const Header& header, const MapChanges& changes,
+                                       const std::vector<MapChanges::Landmark>& repeated = {});
 
 }  // namespace airdos
 

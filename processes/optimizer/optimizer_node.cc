@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <exception>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "processes/optimizer/optimizer_messages.h"
@@ -12,17 +14,16 @@ namespace {
 /// What is published of a frame.
 struct Answer {
   state_estimate_t state;
-  std::vector<map_update_t> updates;
+  MapChanges changes;
 };
 
-Answer UnknownAnswer(const Header& header) {
-  return {UnknownStateEstimate(header), ToMapUpdates(header, MapChanges())};
-}
+Answer UnknownAnswer(const Header& header) { return {UnknownStateEstimate(header), MapChanges()}; }
 
 /// Whether others would take it.
-bool IsValid(const Answer& answer) {
+bool IsValid(const Header& header, const Answer& answer) {
+  const std::vector<map_update_t> updates = ToMapUpdates(header, answer.changes);
   return Validate(answer.state).empty() &&
-         std::all_of(answer.updates.begin(), answer.updates.end(),
+         std::all_of(updates.begin(), updates.end(),
                      [](const map_update_t& update) { return Validate(update).empty(); });
 }
 
@@ -35,24 +36,44 @@ OptimizerNode::OptimizerNode(const OptimizerOptions& options)
     Join(channel::kHumanObservations, &OptimizerInputs::humans);
   }
   JoinCalibration();
+  DeclareOutput(channel::kStateEstimate);
+  DeclareOutput(channel::kMapUpdate);
 }
 
-void OptimizerNode::StartSession(const Header&) { window_.reset(); }
+void OptimizerNode::StartSession(const Header&) {
+  window_.reset();
+  archive_ = LandmarkArchive();
+  newest_utime_.reset();
+}
 
 void OptimizerNode::ProcessFrame(const Header& header, OptimizerInputs inputs) {
   Answer answer = UnknownAnswer(header);
+  if (inputs.features && inputs.features->tracking_state == static_features_t::STATE_INVALID) {
+    inputs.features.reset();  // the front end knows nothing of the frame
+  }
   // Where W is only the front end can say: to begin at its origin would be another W when this
-  // process was started again in the middle.
-  if (window_ != nullptr || inputs.features) {
-    const FrameResult result = Adjust(header, inputs);
-    answer = {ToStateEstimate(header, result.estimate), ToMapUpdates(header, result.changes)};
-    if (!IsValid(answer)) {  // led astray, as by a front end that jumps by thousands of kilometres
+  // process was started again in the middle. And what nobody saw can only be predicted, which into
+  // the past makes no sense.
+  const bool is_later = newest_utime_ && header.utime > *newest_utime_;
+  if (inputs.features || (window_ != nullptr && is_later)) {
+    newest_utime_ = header.utime;
+    FrameResult result = Adjust(header, inputs);
+    answer = {ToStateEstimate(header, result.estimate), std::move(result.changes)};
+    if (!IsValid(header,
+                 answer)) {  // led astray, as by a front end that jumps by thousands of kilometres
       window_.reset();
       answer = UnknownAnswer(header);
     }
   }
   Publish(channel::kStateEstimate, answer.state);
-  for (const map_update_t& part : answer.updates) Publish(channel::kMapUpdate, part);
+  if (archive_.Add(answer.changes)) {
+    Warn("the map has more than " + std::to_string(LandmarkArchive::kMaxLandmarks) +
+         " landmarks: the oldest are not told again to who joins the bus late; the recorder has "
+         "them");
+  }
+  for (const map_update_t& part : ToMapUpdates(header, answer.changes, archive_.NextRepeated())) {
+    Publish(channel::kMapUpdate, part);
+  }
 }
 
 FrameResult OptimizerNode::Adjust(const Header& header, const OptimizerInputs& inputs) {

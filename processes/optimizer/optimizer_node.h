@@ -9,6 +9,7 @@
 #include "common/config/config_reader.h"
 #include "common/optimization/sliding_window.h"
 #include "processes/node/frame_node.h"
+#include "processes/optimizer/landmark_archive.h"
 #include "processes/optimizer/optimizer_options.h"
 
 namespace airdos {
@@ -19,10 +20,12 @@ struct OptimizerInputs {
 };
 
 /// STATIC_FEATURES and, with `people: on`, HUMAN_OBSERVATIONS in; STATE_ESTIMATE and MAP_UPDATE
-/// (one or more parts) out, for each frame once. A frame whose inputs never came is predicted; in
-/// frames before the first STATIC_FEATURES nothing is known (STATUS_INVALID). W is where the front
-/// end's first message has it, so that a process that was started again goes on in the same W. So
-/// it does after an estimate that is beyond all bounds of its message, which is not published.
+/// (one or more parts) out, for each frame once. A frame whose inputs never came is predicted, if
+/// it is later than the one before; else, and in frames before the first STATIC_FEATURES, nothing
+/// is known (STATUS_INVALID). W is where the front end's first message has it, so that a process
+/// that was started again goes on in the same W. So it does after an estimate that is beyond all
+/// bounds of its message, which is not published. Each MAP_UPDATE tells some landmarks again, so
+/// that who comes late gets the map as well.
 class OptimizerNode final : public FrameNode<OptimizerInputs> {
  public:
   explicit OptimizerNode(const OptimizerOptions& options);
@@ -34,6 +37,8 @@ class OptimizerNode final : public FrameNode<OptimizerInputs> {
 
   OptimizerOptions options_;
   std::unique_ptr<SlidingWindowOptimizer> window_;  // of the session; null before its first frame
+  LandmarkArchive archive_;                         // of the session
+  std::optional<std::int64_t> newest_utime_;        // of the session, of a frame that has a pose
 };
 
 std::unique_ptr<Node> MakeOptimizerNode(ConfigReader* config);

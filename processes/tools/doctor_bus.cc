@@ -86,6 +86,9 @@ void JudgeProcess(const process_status_t& status, const std::string& own_version
     result->push_back(
         {Health::kWarn, "bus.error", NameOf(status) + " says: " + status.last_error, ""});
   }
+  for (const std::string& warning : status.warnings) {
+    result->push_back({Health::kWarn, "bus.warning", NameOf(status) + " says: " + warning, ""});
+  }
   for (const channel_status_t& channel : status.channels) {
     if (channel.num_rejected == 0) continue;
     result->push_back({Health::kWarn, "bus.rejected",

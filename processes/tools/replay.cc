@@ -125,6 +125,9 @@ void AddRemarks(const Node& node, std::vector<std::string>* remarks) {
     remarks->push_back(node.name() + ": " + std::to_string(frames.num_incomplete) +
                        " frames incomplete");
   }
+  for (const std::string& warning : node.warnings()) {
+    remarks->push_back(node.name() + ": warning: " + warning);
+  }
   for (const auto& [channel, counters] : node.channels()) {
     const auto add = [&, name = channel](std::int64_t count, const std::string& what) {
       if (count > 0)

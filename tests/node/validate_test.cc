@@ -99,7 +99,9 @@ TEST(ValidateTest, Mask) {
 
 TEST(ValidateTest, StaticFeatures) {
   using M = static_features_t;
-  ExpectReject<M>("tracking_state 0", [](M* m) { m->tracking_state = 0; });
+  ExpectReject<M>("tracking_state -1", [](M* m) { m->tracking_state = -1; });
+  ExpectReject<M>("where nothing was tracked",
+                  [](M* m) { m->tracking_state = M::STATE_INVALID; });
   ExpectReject<M>("tracking_state 5", [](M* m) { m->tracking_state = 5; });
   ExpectReject<M>("position_O_C nan", [](M* m) { m->position_O_C[2] = kNan; });
   ExpectReject<M>("orientation_O_C 1.1", [](M* m) { m->orientation_O_C[0] = 1.1; });
@@ -161,6 +163,11 @@ TEST(ValidateTest, MapUpdate) {
   ExpectReject<M>("part -1", [](M* m) { m->part = -1; });
   ExpectReject<M>("frame's seq", [](M* m) { m->frames[1].seq = -1; });
   ExpectReject<M>("frame's orientation", [](M* m) { m->frames[1].orientation_W_C[0] = 2; });
+  ExpectReject<M>("repeated_landmark_id -1", [](M* m) { m->repeated_landmark_id[0] = -1; });
+  ExpectReject<M>("repeated landmark's coordinate", [](M* m) { m->repeated_z_W_m[0] = kNan; });
+  ExpectReject<M>("repeated_sigma_m 0", [](M* m) { m->repeated_sigma_m[1] = 0; });
+  ExpectReject<M>("repeated_num_observations -1",
+                  [](M* m) { m->repeated_num_observations[1] = -1; });
   ExpectReject<M>("landmark_id -1", [](M* m) { m->landmark_id[0] = -1; });
   ExpectReject<M>("landmark's coordinate", [](M* m) { m->y_W_m[1] = kNan; });
   ExpectReject<M>("sigma_m 0", [](M* m) { m->sigma_m[1] = 0; });
@@ -187,6 +194,8 @@ TEST(ValidateTest, PoseFrameDoneAndStatus) {
   ExpectReject<M>("pid -1", [](M* m) { m->pid = -1; });
   ExpectReject<M>("frame counter -1", [](M* m) { m->num_frames_skipped = -1; });
   ExpectReject<M>("latency", [](M* m) { m->latency_p99_ms = kNan; });
+  ExpectReject<M>("num_warnings 101", [](M* m) { m->num_warnings = 101; });
+  ExpectReject<M>("a warning 1001 letters", [](M* m) { m->warnings[1].assign(1001, 'a'); });
   ExpectReject<M>("num_channels 101", [](M* m) { m->num_channels = 101; });
   ExpectReject<M>("channel counter -2", [](M* m) { m->channels[1].num_missing = -2; });
 }

@@ -281,6 +281,12 @@ final class SpyTestStream {
     message.num_observations = new int[0];
     message.removed_landmark_id = new long[0];
     message.humans = new human_state_t[0];
+    message.repeated_landmark_id = new long[0];
+    message.repeated_x_W_m = new double[0];
+    message.repeated_y_W_m = new double[0];
+    message.repeated_z_W_m = new double[0];
+    message.repeated_sigma_m = new float[0];
+    message.repeated_num_observations = new int[0];
     return message;
   }
 
@@ -309,6 +315,8 @@ final class SpyTestStream {
     message.latency_p99_ms = 44.25;
     message.waiting_for = process.equals("frontend") ? "" : "PERSON_KEYPOINTS_RIGHT";
     message.last_error = "";
+    message.num_warnings = 2;
+    message.warnings = new String[] {"times go back", "the images are not rectified"};
     channel_status_t channel = new channel_status_t();
     channel.channel = "CAMERA_LEFT";
     channel.num_received = seq;

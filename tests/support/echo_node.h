@@ -25,6 +25,7 @@ class EchoNode : public FrameNode<EchoInputs> {
     Join<image_t>(channel::kCameraLeft, &EchoInputs::left);
     Join<image_t>(channel::kCameraRight, &EchoInputs::right);
     JoinCalibration();
+    DeclareOutput(kEcho);
   }
 
  protected:

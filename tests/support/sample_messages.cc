@@ -154,6 +154,11 @@ map_update_t Sample<map_update_t>() {
   message.removed_landmark_id = {5, 6};
   message.num_humans = 2;
   message.humans.assign(2, SampleHumanState());
+  message.num_repeated = 2;
+  message.repeated_landmark_id = {7, 8};
+  message.repeated_x_W_m = message.repeated_y_W_m = message.repeated_z_W_m = {3, 4};
+  message.repeated_sigma_m = {0.3F, 0.4F};
+  message.repeated_num_observations = {5, 6};
   return message;
 }
 
@@ -181,6 +186,8 @@ process_status_t Sample<process_status_t>() {
   message.pid = 4711;
   message.state = process_status_t::STATE_READY;
   message.waiting_for = "CAMERA_LEFT";
+  message.num_warnings = 2;
+  message.warnings = {"the images are not rectified", "times go back"};
   message.num_channels = 2;
   message.channels.resize(2);
   for (channel_status_t& channel : message.channels) {

@@ -249,6 +249,9 @@ final class SpyRendererTest {
     check(table.getValueAt(0, 12).equals("01234567"), "which types it was built with");
     check(table.getValueAt(1, 13).equals("PERSON_KEYPOINTS_RIGHT"), "and says for what");
     check(table.getValueAt(0, 6).equals(2L) && table.getValueAt(0, 7).equals("21.5"), "figures");
+    check(
+        table.getValueAt(0, 15).equals("the images are not rectified | times go back"),
+        "what is doubtful, the newest first");
     table.refresh(1000 + StatusTableModel.SILENT_AFTER_MS + 1);
     check(!table.isHealthy(0) && table.getValueAt(0, 1).equals("SILENT"), "frontend fell silent");
   }

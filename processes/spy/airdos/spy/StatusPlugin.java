@@ -28,9 +28,9 @@ public final class StatusPlugin implements SpyPlugin {
   static final String NAME = "Processes";
   private static final String CHANNEL = "STATUS";
   private static final int REFRESH_MS = 500;
-  private static final Dimension SIZE = new Dimension(1180, 260);
+  private static final Dimension SIZE = new Dimension(1420, 260);
   private static final int[] COLUMN_WIDTHS = {
-    110, 75, 52, 75, 55, 55, 58, 52, 52, 90, 80, 50, 82, 170, 120
+    110, 75, 52, 75, 55, 55, 58, 52, 52, 90, 80, 50, 82, 170, 120, 240
   };
 
   public StatusPlugin() {}

@@ -17,7 +17,7 @@ final class StatusTableModel extends AbstractTableModel {
   private static final String[] COLUMNS = {
     "process", "state", "frames", "incomplete", "skipped", "missing", "rejected",
     "p50 ms", "p99 ms", "cpu ms/frame", "memory MB", "version", "types", "waiting for",
-    "last error"
+    "last error", "warnings"
   };
 
   /** Digits of a fingerprint: enough to tell two apart. */
@@ -110,8 +110,10 @@ final class StatusTableModel extends AbstractTableModel {
         return beginning(status.types_fingerprint);
       case 13:
         return status.waiting_for;
-      default:
+      case 14:
         return status.last_error;
+      default: // the newest first, as not all of them fit
+        return newestFirst(status.warnings);
     }
   }
 
@@ -125,6 +127,14 @@ final class StatusTableModel extends AbstractTableModel {
     long sum = 0;
     for (channel_status_t channel : status.channels) sum += channel.num_rejected;
     return sum;
+  }
+
+  private static String newestFirst(String[] texts) {
+    StringBuilder all = new StringBuilder();
+    for (int i = texts.length - 1; i >= 0; --i) {
+      all.append(all.length() == 0 ? "" : " | ").append(texts[i]);
+    }
+    return all.toString();
   }
 
   private static String beginning(String text) {

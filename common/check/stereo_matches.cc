@@ -1,0 +1,91 @@
+#include "common/check/stereo_matches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/features2d.hpp>
+#include <opencv2/video/tracking.hpp>
+
+#include "common/check/check_findings.h"
+
+namespace airdos {
+namespace {
+
+constexpr float kMaxRatio = 0.8F;   // of the best to the second-best distance (Lowe)
+constexpr float kMaxHamming = 60;   // bits of 256
+constexpr double kMaxAlignPx = 3;   // a corner of the pyramid is at most this far off
+constexpr int kMinRowMatches = 20;  // fewer say nothing of a single pair
+constexpr double kNoSignPx = 0.3;   // smaller disparities have no sign
+
+/// Whether a row of `a` could be one of `b`: a pair that is not rectified at all is seldom further
+/// off than this, and mismatches are all over the image.
+double MaxRowErrorPx(const cv::Mat& image) { return std::max(20.0, 0.1 * image.rows); }
+
+StereoMatches MatchByDescriptor(const cv::Mat& left, const cv::Mat& right, int max_corners) {
+  const cv::Ptr<cv::ORB> orb =
+      cv::ORB::create(max_corners, 1.2F, 3, 31, 0, 2, cv::ORB::FAST_SCORE, 31, 10);
+  std::vector<cv::KeyPoint> corners_left;
+  std::vector<cv::KeyPoint> corners_right;
+  cv::Mat descriptors_left;
+  cv::Mat descriptors_right;
+  orb->detectAndCompute(left, cv::noArray(), corners_left, descriptors_left);
+  orb->detectAndCompute(right, cv::noArray(), corners_right, descriptors_right);
+  StereoMatches matches;
+  if (corners_left.size() < 2 || corners_right.size() < 2) return matches;
+  std::vector<std::vector<cv::DMatch>> nearest;
+  cv::BFMatcher(cv::NORM_HAMMING).knnMatch(descriptors_left, descriptors_right, nearest, 2);
+  for (const std::vector<cv::DMatch>& pair : nearest) {
+    if (pair.size() < 2 || pair[0].distance > kMaxHamming ||
+        pair[0].distance > kMaxRatio * pair[1].distance) {
+      continue;
+    }
+    const cv::Point2f a = corners_left[static_cast<std::size_t>(pair[0].queryIdx)].pt;
+    const cv::Point2f b = corners_right[static_cast<std::size_t>(pair[0].trainIdx)].pt;
+    if (std::abs(a.y - b.y) > MaxRowErrorPx(left) || std::abs(a.x - b.x) > 0.5 * left.cols) {
+      continue;
+    }
+    matches.left.push_back(a);
+    matches.right.push_back(b);
+  }
+  return matches;
+}
+
+/// Corners of a pyramid are good to a pixel or two; aligned patches to a tenth.
+StereoMatches Align(const cv::Mat& left, const cv::Mat& right, const StereoMatches& matches) {
+  StereoMatches aligned;
+  if (matches.left.empty()) return aligned;
+  std::vector<cv::Point2f> found = matches.right;
+  std::vector<unsigned char> status;
+  cv::calcOpticalFlowPyrLK(
+      left, right, matches.left, found, status, cv::noArray(), cv::Size(15, 15), 0,
+      cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 20, 0.02),
+      cv::OPTFLOW_USE_INITIAL_FLOW);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (status[i] == 0 || cv::norm(found[i] - matches.right[i]) > kMaxAlignPx) continue;
+    aligned.left.push_back(matches.left[i]);
+    aligned.right.push_back(found[i]);
+  }
+  return aligned;
+}
+
+}  // namespace
+
+StereoMatches MatchStereo(const cv::Mat& left, const cv::Mat& right, int max_corners) {
+  return Align(left, right, MatchByDescriptor(left, right, max_corners));
+}
+
+std::optional<RowError> MeasureRowError(const cv::Mat& left, const cv::Mat& right,
+                                        int max_corners) {
+  const StereoMatches matches = MatchStereo(left, right, max_corners);
+  const std::size_t num_matches = matches.left.size();
+  if (num_matches < kMinRowMatches) return std::nullopt;
+  std::vector<double> rows_px;
+  double num_negative = 0;
+  for (std::size_t i = 0; i < num_matches; ++i) {
+    rows_px.push_back(std::abs(matches.right[i].y - matches.left[i].y));
+    num_negative += matches.left[i].x - matches.right[i].x < -kNoSignPx ? 1 : 0;
+  }
+  return RowError{static_cast<int>(num_matches), Quantile(rows_px, 0.5),
+                  num_negative / static_cast<double>(num_matches)};
+}
+
+}  // namespace airdos

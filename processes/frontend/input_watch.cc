@@ -1,0 +1,139 @@
+#include "processes/frontend/input_watch.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/check/check_findings.h"
+#include "common/check/stereo_matches.h"
+
+namespace airdos {
+namespace {
+
+// To measure a pair takes about half as long as to track a frame.
+constexpr int kMaxCorners = 300;
+constexpr int kFirstMeasured = 2;  // pairs of the first ten, if they have corners
+constexpr int kMeasureEvery = 100;
+
+constexpr double kNotRectified_px = 1.5;  // the front end searches a corner so near to its row
+constexpr double kBadlyRectified_px = 0.6;
+constexpr double kMinExchanged = 0.7;  // share of the disparities that are negative
+
+constexpr double kMaxCoverage = 0.9;
+constexpr int kMinJoints = 50;
+constexpr double kMinMarked = 0.1;  // share of the joints that lie on masks
+constexpr double kMinJointConfidence = 0.2;
+
+// Intervals that cameras have, and those that most have.
+constexpr double kMinPeriod_s = 0.002;
+constexpr double kMaxPeriod_s = 2;
+constexpr double kMinUsualPeriod_s = 0.005;
+constexpr double kMaxUsualPeriod_s = 1;
+
+/// The pairs measured last must agree: one may have shown nothing but waves.
+double LesserOfLastTwo(const std::vector<double>& values) {
+  return std::min(values[values.size() - 2], values.back());
+}
+
+}  // namespace
+
+std::vector<std::string> InputWatch::TakeWarnings() { return std::exchange(warnings_, {}); }
+
+void InputWatch::AddTime(std::int64_t utime) {
+  if (are_times_judged_) return;
+  if (last_utime_) {
+    steps_us_.push_back(static_cast<double>(utime) - static_cast<double>(*last_utime_));
+  }
+  last_utime_ = utime;
+  if (time_schedule_.IsDue()) JudgeTimes();
+}
+
+void InputWatch::JudgeTimes() {
+  are_times_judged_ = true;
+  const double period_s = 1e-6 * Quantile(std::exchange(steps_us_, {}), 0.5);
+  const std::string must = "; utime must be the capture time in us";
+  if (period_s == 0) {
+    warnings_.push_back("the left images' utime stands still" + must);
+    return;
+  }
+  if (period_s >= kMinPeriod_s && period_s <= kMaxPeriod_s) return;
+  std::string unit;
+  for (const auto& [name, factor] : {std::pair{"ns", 1e-3}, {"ms", 1e3}, {"s", 1e6}}) {
+    const double meant_s = factor * period_s;
+    if (meant_s >= kMinUsualPeriod_s && meant_s <= kMaxUsualPeriod_s) {
+      unit = std::string(": it is in ") + name;
+      break;
+    }
+  }
+  warnings_.push_back("the left images' utime says that they are " + Brief(period_s) +
+                      " s apart (median)" + unit + must);
+}
+
+void InputWatch::AddPair(const cv::Mat& left, const cv::Mat& right) {
+  ++num_pairs_;
+  const bool is_first = num_measured_ < kFirstMeasured && num_pairs_ <= LookSchedule::kFirstLook &&
+                        num_pairs_ % 2 == 1;
+  if (!is_first && num_pairs_ % kMeasureEvery != 0) return;
+  const std::optional<RowError> error = MeasureRowError(left, right, kMaxCorners);
+  if (!error) return;
+  ++num_measured_;
+  row_errors_px_.push_back(error->median_px);
+  negative_shares_.push_back(error->share_negative);
+  if (num_measured_ >= kFirstMeasured) JudgePairs();
+}
+
+void InputWatch::JudgePairs() {
+  const double error_px = LesserOfLastTwo(row_errors_px_);
+  const double share_negative = LesserOfLastTwo(negative_shares_);
+  row_errors_px_.erase(row_errors_px_.begin());
+  negative_shares_.erase(negative_shares_.begin());
+  if (!is_exchange_said_ && share_negative > kMinExchanged) {
+    is_exchange_said_ = true;
+    warnings_.push_back("left and right images are exchanged: " + Percent(share_negative) +
+                        " of the matches have a negative disparity; no static feature will be "
+                        "found until they change places");
+  }
+  if (are_rows_said_ || error_px <= kBadlyRectified_px) return;
+  are_rows_said_ = true;
+  const std::string how = error_px > kNotRectified_px ? "are not rectified" : "are badly rectified";
+  warnings_.push_back("the images " + how + ": rows of matches differ by " + Brief(error_px) +
+                      " px (median); airdos-check LOG|FOLDER says more");
+}
+
+void InputWatch::AddMask(const cv::Mat& mask, const std::vector<BodyKeypoints>& people) {
+  const bool is_due = mask_schedule_.IsDue();
+  if (are_masks_said_) return;
+  coverages_.push_back(cv::countNonZero(mask) / static_cast<double>(mask.total()));
+  for (const BodyKeypoints& person : people) {
+    for (const BodyKeypoint& joint : person) {
+      const bool is_seen = joint.confidence >= kMinJointConfidence && joint.u_px >= 0 &&
+                           joint.v_px >= 0 && joint.u_px < mask.cols && joint.v_px < mask.rows;
+      if (!is_seen) continue;
+      ++num_joints_;
+      const cv::Point pixel(static_cast<int>(joint.u_px), static_cast<int>(joint.v_px));
+      num_marked_ += mask.at<unsigned char>(pixel) != 0 ? 1 : 0;
+    }
+  }
+  if (is_due) JudgeMasks();
+}
+
+void InputWatch::JudgeMasks() {
+  const double coverage = Quantile(std::exchange(coverages_, {}), 0.5);
+  const int num_joints = std::exchange(num_joints_, 0);
+  const int num_marked = std::exchange(num_marked_, 0);
+  const bool misses_people = num_joints >= kMinJoints && num_marked < kMinMarked * num_joints;
+  std::string text;
+  if (coverage > kMaxCoverage) {
+    text = "the person masks cover " + Percent(coverage) +
+           " of the image (median), where static features may not come from; are they inverted, or "
+           "does each class have a number?";
+  } else if (misses_people) {
+    text = "the person masks do not mark people: " + std::to_string(num_marked) + " of " +
+           std::to_string(num_joints) +
+           " keypoints lie on them; are they inverted, empty or of another camera?";
+  }
+  if (text.empty()) return;
+  are_masks_said_ = true;
+  warnings_.push_back(text);
+}
+
+}  // namespace airdos
