@@ -9,6 +9,10 @@
 
 namespace airdos {
 
+void CheckedInput::ReportTimes(FindingList* findings) const {
+  CheckTimes(utimes(), where_times(), findings);
+}
+
 std::vector<std::size_t> SampleEvenly(std::size_t size, std::size_t count) {
   std::vector<std::size_t> sample;
   if (count >= size) {
@@ -23,7 +27,7 @@ std::vector<std::size_t> SampleEvenly(std::size_t size, std::size_t count) {
 
 void CheckFrames(const CheckedInput& input, const CheckOptions& options, FindingList* findings) {
   CheckCamera(input.camera(), input.where_camera(), findings);
-  CheckTimes(input.utimes(), input.where_times(), findings);
+  input.ReportTimes(findings);
 
   StereoCheck stereo(input.camera());
   MaskCheck masks(input.camera());

@@ -45,6 +45,8 @@ class CheckedInput {
   virtual std::string where_camera() const = 0;
   virtual const std::vector<std::int64_t>& utimes() const = 0;  ///< us, of each frame in order
   virtual std::string where_times() const = 0;
+  /// Checks the times: those of a folder, in s.
+  virtual void ReportTimes(FindingList* findings) const;
   virtual const std::vector<std::optional<Se3>>& ground_truth() const = 0;  ///< of each frame
   virtual TrajectoryAxes ground_truth_axes() const = 0;
   virtual std::string where_ground_truth() const = 0;
@@ -55,6 +57,8 @@ class CheckedInput {
 };
 
 struct CheckOptions {
+  enum class Depth { kQuick, kFull };
+  Depth depth = Depth::kFull;
   std::size_t max_frames = 20;       ///< whose pictures are looked at, evenly spread
   std::size_t odometry_frames = 30;  ///< to compare with the ground truth; 0: none
 };

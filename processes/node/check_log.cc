@@ -1,10 +1,14 @@
 #include "processes/node/check_log.h"
 
+#include <limits>
 #include <map>
+#include <type_traits>
 #include <utility>
 
 #include "common/check/check_jpeg.h"
 #include "common/check/check_people.h"
+#include "common/check/check_stereo.h"
+#include "common/util/image_header.h"
 #include "processes/node/channels.h"
 #include "processes/node/check_log_survey.h"
 #include "processes/node/codec.h"
@@ -17,6 +21,9 @@
 namespace airdos {
 namespace {
 
+// Read before a run starts: a second of a slow disk, some minutes of most recordings.
+constexpr std::int64_t kQuickBytes = std::int64_t{200} << 20;
+
 /// A sound message of this type, or nothing: LogSurvey has said why.
 template <class Message>
 std::optional<Message> DecodeSound(const LogEvent& event) {
@@ -24,6 +31,19 @@ std::optional<Message> DecodeSound(const LogEvent& event) {
   const bool decodes = Decode(event.payload.data(), event.payload.size(), &message);
   if (!decodes || !Validate(message).empty()) return std::nullopt;
   return message;
+}
+
+/// Whether the file within has another size than the message says, or none: LogSizes has said so.
+template <class Message>
+bool ContradictsItself(const Message& message) {
+  if constexpr (std::is_same_v<Message, image_t>) {
+    if (message.encoding != image_t::ENCODING_JPEG && message.encoding != image_t::ENCODING_PNG)
+      return false;
+  } else {
+    if (message.encoding != person_mask_t::ENCODING_PNG) return false;
+  }
+  const auto header = ReadImageHeader(message.data.data(), message.data.size());
+  return !header || header->width != message.width || header->height != message.height;
 }
 
 CheckedPeople ToCheckedPeople(const std::string& path, const LogEvent& event,
@@ -45,6 +65,7 @@ class LogInput : public CheckedInput {
   std::string where_camera() const override { return path_ + ": CALIBRATION"; }
   const std::vector<std::int64_t>& utimes() const override { return survey_->utimes(); }
   std::string where_times() const override { return path_ + ": CAMERA_LEFT"; }
+  void ReportTimes(FindingList*) const override {}  // LogSurvey has: utime may be anything
   const std::vector<std::optional<Se3>>& ground_truth() const override {
     return survey_->ground_truth();
   }
@@ -71,30 +92,36 @@ class LogInput : public CheckedInput {
   void Take(const LogEvent& event, CheckedPictures* pictures, FindingList* findings) const {
     if (event.channel == channel::kCameraLeft || event.channel == channel::kCameraRight) {
       const auto message = DecodeSound<image_t>(event);
-      if (!message) return;
+      if (!message || ContradictsItself(*message)) return;
       const bool is_left = event.channel == channel::kCameraLeft;
       const std::string where = LogSurvey::Where(path_, event.channel, message->seq);
       (is_left ? pictures->where_left : pictures->where_right) = where;
       const std::optional<cv::Mat> picture = DecodeGray(*message);
-      if (picture) {
+      if (!picture) {
+        findings->Fail("images.file", where, "cannot be decoded: the file in it is damaged");
+      } else if (HasCameraSize(*picture)) {
         (is_left ? pictures->left : pictures->right) = *picture;
-      } else {
-        findings->Fail("images.file", where, "cannot be decoded as an image of the size it says");
       }
     } else if (event.channel == channel::kPersonMask) {
       const auto message = DecodeSound<person_mask_t>(event);
       if (!message || message->encoding == person_mask_t::ENCODING_NONE) return;
+      if (ContradictsItself(*message)) return;
       pictures->where_mask = LogSurvey::Where(path_, event.channel, message->seq);
       const std::optional<cv::Mat> picture = DecodeMask(*message);
-      if (picture) {
-        pictures->mask = *picture;
-      } else {
+      if (!picture) {
         findings->Fail("masks.file", pictures->where_mask, "cannot be decoded as a mask");
+      } else if (HasCameraSize(*picture)) {
+        pictures->mask = *picture;
       }
     } else if (event.channel == channel::kPersonKeypointsLeft) {
       const auto message = DecodeSound<person_keypoints_t>(event);
       if (message) pictures->people_left = ToCheckedPeople(path_, event, *message);
     }
+  }
+
+  // LogSizes has said where it is not.
+  bool HasCameraSize(const cv::Mat& picture) const {
+    return picture.cols == camera_.width && picture.rows == camera_.height;
   }
 
   std::string path_;
@@ -127,18 +154,14 @@ void CheckContents(const std::string& path, const StereoCamera& camera, FindingL
 }  // namespace
 
 void CheckLog(const std::string& path, const CheckOptions& options, FindingList* findings) {
-  const LogSurvey survey(path, findings);
-  if (survey.frames().empty()) {
-    if (survey.has_features()) {
-      findings->Warn("log.images", path,
-                     "no images, only features (airdos-replay --from-features)");
-    } else {
-      findings->Fail("log.images", path, "no image on CAMERA_LEFT");
-    }
+  const bool is_quick = options.depth == CheckOptions::Depth::kQuick;
+  const LogSurvey survey(path, is_quick ? kQuickBytes : std::numeric_limits<std::int64_t>::max());
+  survey.Report(findings);
+  if (!survey.camera() || survey.frames().empty()) return;
+  if (is_quick) {
+    CheckCamera(*survey.camera(), path + ": CALIBRATION", findings);
     return;
   }
-  survey.Report();
-  if (!survey.camera()) return;
   CheckContents(path, *survey.camera(), findings);
   CheckFrames(LogInput(path, &survey), options, findings);
 }

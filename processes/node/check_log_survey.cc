@@ -1,7 +1,6 @@
 #include "processes/node/check_log_survey.h"
 
 #include <algorithm>
-#include <array>
 
 #include "processes/node/channels.h"
 #include "processes/node/codec.h"
@@ -12,19 +11,26 @@
 namespace airdos {
 namespace {
 
-// Above it default receive buffers lose messages.
-constexpr std::size_t kLargeMessageBytes = 128 << 10;
-
-template <class Message>
-std::string RejectAs(const LogEvent& event) {
-  Message message;
-  if (!Decode(event.payload.data(), event.payload.size(), &message)) return "does not decode";
-  return Validate(message);
-}
-
 TrajectoryAxes ToAxes(int axes) {
   if (axes == pose_t::AXES_OPTICAL) return TrajectoryAxes::kOptical;
   return axes == pose_t::AXES_NED ? TrajectoryAxes::kNed : TrajectoryAxes::kUnknown;
+}
+
+std::string Hex(std::int64_t fingerprint) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "0x%016llx", static_cast<unsigned long long>(fingerprint));
+  return text;
+}
+
+template <class Message>
+std::string WrongType(std::int64_t fingerprint) {
+  const std::string ours = TypeOfFingerprint(fingerprint);
+  return "has type " + (ours.empty() ? "fingerprint " + Hex(fingerprint) : ours + " ") +
+         (ours.empty() ? "" : "(fingerprint " + Hex(fingerprint) + ")") + ", this build wants " +
+         Message::getTypeName() + " (" + Hex(Message::getHash()) + "): " +
+         (ours.empty() ? "another type, or another version of it: publish it with the types of "
+                         "this build (lcmtypes)"
+                       : "publish the right type");
 }
 
 }  // namespace
@@ -34,13 +40,22 @@ std::string LogSurvey::Where(const std::string& path, const std::string& channel
   return path + ": " + channel + " " + std::to_string(seq);
 }
 
-LogSurvey::LogSurvey(const std::string& path, FindingList* findings)
-    : path_(path), findings_(findings) {
+void LogSurvey::Mistake::Add(std::int64_t where, const std::string& what) {
+  if (num++ > 0) return;
+  first = where;
+  text = what;
+}
+
+LogSurvey::LogSurvey(const std::string& path, std::int64_t max_bytes) : path_(path) {
   EventLogReader reader(path);
   while (const std::optional<LogEvent> event = reader.Next()) {
-    has_features_ = has_features_ || event->channel == channel::kStaticFeatures;
+    all_channels_.Add(event->channel, event->payload.data(), event->payload.size());
     if (IsInputChannel(event->channel)) Take(*event);
+    is_cut_ = reader.position_bytes() >= max_bytes && reader.position_bytes() < reader.num_bytes();
+    if (is_cut_) break;
   }
+  num_bytes_ = reader.num_bytes();
+  num_bytes_read_ = reader.position_bytes();
   num_lost_ = reader.num_lost();
   num_bytes_skipped_ = reader.num_bytes_skipped();
   for (const FrameKey& frame : frames_) {
@@ -50,136 +65,105 @@ LogSurvey::LogSurvey(const std::string& path, FindingList* findings)
   }
 }
 
-std::string LogSurvey::Reject(const LogEvent& event) {
-  if (event.channel == channel::kCalibration) return RejectAs<stereo_calibration_t>(event);
-  if (event.channel == channel::kPersonMask) return RejectAs<person_mask_t>(event);
-  if (event.channel == channel::kGroundTruth) return RejectAs<pose_t>(event);
-  if (event.channel == channel::kPersonKeypointsLeft ||
-      event.channel == channel::kPersonKeypointsRight) {
-    return RejectAs<person_keypoints_t>(event);
+template <class Message>
+std::optional<Message> LogSurvey::Sound(const LogEvent& event, Channel* channel) {
+  const std::uint8_t* data = event.payload.data();
+  const std::size_t size = event.payload.size();
+  const std::optional<std::int64_t> fingerprint = PeekFingerprint(data, size);
+  if (fingerprint && *fingerprint != Message::getHash()) {
+    channel->wrong_type.Add(event.number, WrongType<Message>(*fingerprint));
+    return std::nullopt;
   }
-  return RejectAs<image_t>(event);
+  Message message;
+  std::string reason = "does not decode (" + std::to_string(size) + " bytes)";
+  if (Decode(data, size, &message)) reason = Validate(message);
+  if (reason.empty()) return message;
+  channel->rejected.Add(event.number, reason);
+  return std::nullopt;
 }
 
 void LogSurvey::Take(const LogEvent& event) {
-  Channel& channel = channels_[event.channel];
+  const std::string& name = event.channel;
+  Channel& channel = channels_[name];
   ++channel.num_messages;
   channel.max_bytes = std::max(channel.max_bytes, event.payload.size());
   channel.num_large += event.payload.size() > kLargeMessageBytes ? 1 : 0;
-  const std::string reject = Reject(event);
-  if (!reject.empty()) {
-    findings_->Fail("log.rejected", path_ + ": event " + std::to_string(event.number),
-                    "a message on " + event.channel + " is rejected: " + reject);
-    return;
+  if (name == channel::kCalibration) {
+    const auto message = Sound<stereo_calibration_t>(event, &channel);
+    if (message) TakeCalibration(*message);
+  } else if (name == channel::kPersonMask) {
+    const auto message = Sound<person_mask_t>(event, &channel);
+    if (!message) return;
+    TakeHeader(name, HeaderOf(*message), &channel);
+    sizes_.Add(name, *message);
+  } else if (name == channel::kGroundTruth) {
+    const auto message = Sound<pose_t>(event, &channel);
+    if (!message) return;
+    TakeHeader(name, HeaderOf(*message), &channel);
+    TakeTruth(*message);
+  } else if (name == channel::kPersonKeypointsLeft || name == channel::kPersonKeypointsRight) {
+    const auto message = Sound<person_keypoints_t>(event, &channel);
+    if (message) TakeHeader(name, HeaderOf(*message), &channel);
+  } else {
+    const auto message = Sound<image_t>(event, &channel);
+    if (!message) return;
+    TakeHeader(name, HeaderOf(*message), &channel);
+    if (name == channel::kCameraLeft) TakeLeft(HeaderOf(*message));
+    sizes_.Add(name, *message);
   }
-  const Header header = *PeekHeader(event.payload.data(), event.payload.size());
-  if (event.channel == channel::kCalibration) return TakeCalibration(event);
-  CheckHeader(event.channel, header);
-  channel.last = header;
-  const FrameKey key{header.session, header.seq};
-  if (event.channel == channel::kGroundTruth) return TakeTruth(event);
-  if (event.channel != channel::kCameraLeft) return;
+}
+
+void LogSurvey::TakeHeader(const std::string& name, const Header& header, Channel* channel) {
+  pairing_.Add(name, header);
+  if (channel->last && channel->last->session == header.session) {
+    const std::int64_t last = channel->last->seq;
+    if (header.seq == last) {
+      channel->repeated.Add(header.seq, "comes twice");
+    } else if (header.seq <= channel->first->seq) {
+      channel->restarted.Add(header.seq, "comes after number " + std::to_string(last));
+    } else if (header.seq < last) {
+      channel->backwards.Add(header.seq, "comes after number " + std::to_string(last));
+    } else if (header.seq > last + 1) {
+      channel->num_missing += header.seq - last - 1;
+      channel->gap.Add(header.seq,
+                       std::to_string(header.seq - last - 1) + " numbers are missing before it");
+    }
+  }
+  if (!channel->last || channel->last->session != header.session) channel->first = header;
+  channel->last = header;
+}
+
+void LogSurvey::TakeLeft(const Header& header) {
   if (!camera_) images_before_calibration_ = images_before_calibration_.value_or(0) + 1;
+  const auto is_same = [&](const Session& known) { return known.session == header.session; };
+  auto session = std::find_if(sessions_.rbegin(), sessions_.rend(), is_same);
+  if (session == sessions_.rend()) {
+    sessions_.push_back({header.session, header.seq, header.seq, 0});
+    session = sessions_.rbegin();
+  }
+  session->first_seq = std::min(session->first_seq, header.seq);
+  session->last_seq = std::max(session->last_seq, header.seq);
+  ++session->num_images;
+  const FrameKey key{header.session, header.seq};
   const bool is_new = utime_of_.emplace(key, header.utime).second;
-  if (frames_.empty() || frames_.back().first != header.session) ++num_sessions_;
-  if (!is_new || (!frames_.empty() && frames_[0].first != header.session)) return;
+  if (!is_new || sessions_[0].session != header.session) return;
   frames_.push_back(key);
   utimes_.push_back(header.utime);
 }
 
-void LogSurvey::CheckHeader(const std::string& name, const Header& header) {
-  Channel& channel = channels_[name];
-  const std::string where = Where(path_, name, header.seq);
-  if (channel.last && channel.last->session == header.session) {
-    const std::int64_t last = channel.last->seq;
-    if (header.seq == last) {
-      findings_->Warn("log.repeated", where, "comes twice");
-    } else if (header.seq < last) {
-      findings_->Fail("log.order", where, "comes after number " + std::to_string(last));
-    } else if (header.seq > last + 1) {
-      channel.num_missing += header.seq - last - 1;
-      findings_->Warn("log.gap", where,
-                      std::to_string(header.seq - last - 1) + " numbers are missing before it");
-    }
-  }
-  if (name == channel::kCameraLeft || name == channel::kGroundTruth) return;
-  const auto left = utime_of_.find({header.session, header.seq});
-  if (left == utime_of_.end() || left->second == header.utime) return;
-  findings_->Fail("log.utime", where,
-                  "has another capture time (" + std::to_string(header.utime) +
-                      ") than CAMERA_LEFT of this number (" + std::to_string(left->second) + ")");
-}
-
-void LogSurvey::TakeCalibration(const LogEvent& event) {
-  stereo_calibration_t message;
-  Decode(event.payload.data(), event.payload.size(), &message);
+void LogSurvey::TakeCalibration(const stereo_calibration_t& message) {
   const StereoCamera camera = ToStereoCamera(message);
   if (!camera_) {
     camera_ = camera;
   } else if (!(*camera_ == camera)) {
-    findings_->Warn("log.calibration", Where(path_, event.channel, message.seq),
-                    "differs from the first one; only the first of a session holds");
+    calibration_changes_.Add(message.seq,
+                             "differs from the first one; only the first of a session holds");
   }
 }
 
-void LogSurvey::TakeTruth(const LogEvent& event) {
-  pose_t message;
-  Decode(event.payload.data(), event.payload.size(), &message);
+void LogSurvey::TakeTruth(const pose_t& message) {
   axes_ = ToAxes(message.axes);
   truth_of_[{message.session, message.seq}] = ToSe3(message.position, message.orientation);
-}
-
-void LogSurvey::Report() const {
-  if (num_bytes_skipped_ > 0 || num_lost_ > 0) {
-    findings_->Fail("log.damaged", path_,
-                    std::to_string(num_bytes_skipped_) + " bytes are damaged, about " +
-                        std::to_string(num_lost_) + " events lost");
-  }
-  for (const auto& [name, channel] : channels_) {
-    if (channel.num_large == 0) continue;
-    findings_->Warn("log.size", path_ + ": " + name,
-                    std::to_string(channel.num_large) + " messages are larger than " +
-                        std::to_string(kLargeMessageBytes >> 10) + " kB (up to " +
-                        std::to_string(channel.max_bytes >> 10) +
-                        " kB): receivers with default buffers lose them");
-  }
-  if (num_sessions_ > 1) {
-    findings_->Warn(
-        "log.sessions", path_,
-        std::to_string(num_sessions_) + " sessions; pictures of the first are looked at");
-  }
-  ReportCalibration();
-  ReportCounts();
-}
-
-void LogSurvey::ReportCalibration() const {
-  if (!camera_) {
-    findings_->Fail("log.calibration", path_, "no CALIBRATION: nothing can be measured");
-  } else if (images_before_calibration_) {
-    findings_->Warn(
-        "log.calibration", path_,
-        std::to_string(*images_before_calibration_) + " images come before the first CALIBRATION");
-  }
-}
-
-void LogSurvey::ReportCounts() const {
-  const auto count = [&](const char* name) {
-    const auto it = channels_.find(name);
-    return it == channels_.end() ? 0 : it->second.num_messages;
-  };
-  const std::int64_t num_left = count(channel::kCameraLeft);
-  for (const char* name : {channel::kCameraRight, channel::kPersonKeypointsLeft,
-                           channel::kPersonKeypointsRight, channel::kPersonMask}) {
-    if (count(name) == num_left) continue;
-    const std::string text = std::to_string(count(name)) + " messages for " +
-                             std::to_string(num_left) + " of CAMERA_LEFT";
-    // Without a right image there is nothing; frames without the others wait for them in vain.
-    if (name == channel::kCameraRight && count(name) == 0) {
-      findings_->Fail("log.count", path_ + ": " + name, text);
-    } else {
-      findings_->Warn("log.count", path_ + ": " + name, text);
-    }
-  }
 }
 
 }  // namespace airdos

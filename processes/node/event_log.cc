@@ -12,13 +12,16 @@
 
 #include "common/util/check.h"
 #include "common/util/error.h"
+#include "processes/node/foreign_file.h"
 
 namespace airdos {
 namespace {
 
 constexpr std::array<std::uint8_t, 4> kSyncWord{0xED, 0xA1, 0xDA, 0x01};
 constexpr std::int64_t kHeaderBytes = 28;
-constexpr std::int64_t kMaxChannelBytes = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
+constexpr std::size_t kMaxWrittenChannelBytes = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
+// LCM's own reader takes that much; other programs' writers do not know the limit above.
+constexpr std::int64_t kMaxChannelBytes = 999;
 
 std::uint64_t ReadBigEndian(const std::uint8_t* bytes, int size) {
   std::uint64_t value = 0;
@@ -26,7 +29,9 @@ std::uint64_t ReadBigEndian(const std::uint8_t* bytes, int size) {
   return value;
 }
 
-bool IsVisible(std::uint8_t character) { return character > 0x20 && character != 0x7f; }
+// LCM takes any byte in a name; blanks and what regular expressions use do occur. Control
+// characters do not, and refusing them tells names from what damage left.
+bool IsOfName(std::uint8_t character) { return character >= 0x20 && character != 0x7f; }
 
 void WriteBigEndian(std::uint64_t value, int size, std::uint8_t* bytes) {
   for (int i = 0; i < size; ++i)
@@ -35,17 +40,30 @@ void WriteBigEndian(std::uint64_t value, int size, std::uint8_t* bytes) {
 
 }  // namespace
 
-EventLogReader::EventLogReader(const std::string& path)
-    : path_(path), file_(std::fopen(path.c_str(), "rb")) {
+EventLogReader::EventLogReader(const std::string& path) : path_(path) {
   struct stat status = {};
-  if (file_ == nullptr || fstat(fileno(file_.get()), &status) != 0) {
+  const auto fail = [&path] {
     throw InputError(path + ": cannot be read: " + std::strerror(errno));
-  }
-  if (!S_ISREG(status.st_mode)) throw InputError(path + ": is not a log file");
+  };
+  // Before it is opened: that would wait for whoever writes into a pipe.
+  if (stat(path.c_str(), &status) != 0) fail();
+  if (S_ISDIR(status.st_mode)) throw InputError(path + ": is a folder, not an LCM log");
+  if (!S_ISREG(status.st_mode))
+    throw InputError(path + ": is a pipe or a device, not a file: an LCM log is wanted");
+  file_.reset(std::fopen(path.c_str(), "rb"));
+  if (file_ == nullptr || fstat(fileno(file_.get()), &status) != 0) fail();
   num_bytes_ = status.st_size;
+  if (num_bytes_ == 0) throw InputError(path + ": holds no LCM event (0 bytes): the file is empty");
+  std::vector<std::uint8_t> bytes(
+      static_cast<std::size_t>(std::min<std::int64_t>(num_bytes_, kForeignFileBytes)));
+  if (!ReadAt(0, bytes.data(), bytes.size())) fail();
+  const std::string description = DescribeForeignFile(bytes);
+  if (!description.empty()) throw InputError(path + ": " + description);
   first_ = ReadEvent();
-  if (!first_)
-    throw InputError(path + ": holds no LCM event (" + std::to_string(num_bytes_) + " bytes)");
+  if (first_) return;
+  if (LooksLikeText(bytes)) throw InputError(path + ": is a text file, not an LCM log");
+  throw InputError(path + ": holds no LCM event (" + std::to_string(num_bytes_) +
+                   " bytes): it is no LCM log, or damaged from end to end");
 }
 
 std::optional<LogEvent> EventLogReader::Next() {
@@ -76,7 +94,7 @@ std::optional<EventLogReader::EventHeader> EventLogReader::HeaderAt(std::int64_t
   if (!ReadAt(offset + kHeaderBytes, bytes.data(), static_cast<std::size_t>(header.channel_bytes)))
     return std::nullopt;
   const auto name_end = bytes.begin() + header.channel_bytes;
-  if (!std::all_of(bytes.begin(), name_end, IsVisible)) return std::nullopt;
+  if (!std::all_of(bytes.begin(), name_end, IsOfName)) return std::nullopt;
   return header;
 }
 
@@ -179,9 +197,9 @@ void EventLogWriter::Fail(const std::string& what) {
 }
 
 bool EventLogWriter::Accepts(const std::string& channel, std::size_t size) {
-  return !channel.empty() && channel.size() <= kMaxChannelBytes &&
+  return !channel.empty() && channel.size() <= kMaxWrittenChannelBytes &&
          std::all_of(channel.begin(), channel.end(),
-                     [](char c) { return IsVisible(static_cast<std::uint8_t>(c)); }) &&
+                     [](char c) { return IsOfName(static_cast<std::uint8_t>(c)); }) &&
          size <= static_cast<std::size_t>(EventLogReader::kMaxPayloadBytes);
 }
 

@@ -31,7 +31,9 @@ class EventLogReader {
  public:
   static constexpr std::int64_t kMaxPayloadBytes = 64 << 20;
 
-  /// Throws InputError if the file cannot be read or holds no event at all.
+  /// Throws InputError if the file cannot be read, is of another kind (told by its first bytes, so
+  /// that a long video is not searched for events) or holds no event at all. Never waits for a
+  /// pipe.
   explicit EventLogReader(const std::string& path);
 
   /// The next event, or nothing at the end of the file.
@@ -97,8 +99,8 @@ class EventLogWriter {
   EventLogWriter(const EventLogWriter&) = delete;
   EventLogWriter& operator=(const EventLogWriter&) = delete;
 
-  /// Whether a log can hold such an event: a name of 1..63 visible characters, at most
-  /// EventLogReader::kMaxPayloadBytes.
+  /// Whether a log can hold such an event: a name of 1..63 characters, none of them a
+  /// control character, and at most EventLogReader::kMaxPayloadBytes.
   static bool Accepts(const std::string& channel, std::size_t size);
   /// The log must accept the event. Throws WriteError if it cannot be written as a whole; the log
   /// then ends with the event before it, and no further one is taken.

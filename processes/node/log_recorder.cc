@@ -74,6 +74,7 @@ LogRecorder::LogRecorder(const LogRecorderOptions& options)
 void LogRecorder::Take(const std::string& channel, const void* data, std::size_t size,
                        std::int64_t receive_utime) {
   if (channel == "LCM_SELF_TEST" || !std::regex_match(channel, pattern_)) return;
+  if (options_.inputs_only && !IsInputChannel(channel)) return;
   if (!EventLogWriter::Accepts(channel, size)) {
     ++num_rejected_;
     return;

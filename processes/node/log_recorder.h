@@ -17,6 +17,7 @@ namespace airdos {
 struct LogRecorderOptions {
   std::string path;
   std::string channels = ".*";  ///< regular expression (ECMAScript) of whole names
+  bool inputs_only = false;     ///< of these, only what comes from outside (IsInputChannel)
   double flush_s = 1;           ///< the disk is told to keep what came once in this time
   bool replaces_file = false;   ///< otherwise a file that exists already is bad input
 };

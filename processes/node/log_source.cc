@@ -1,7 +1,6 @@
 #include "processes/node/log_source.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <utility>
 
@@ -12,14 +11,6 @@ namespace airdos {
 namespace {
 
 constexpr std::size_t kSessionsRemembered = 8;  // the last of one may come among those of the next
-
-template <std::size_t kSize>
-bool Contains(const std::array<const char*, kSize>& channels, const std::string& channel) {
-  for (const char* name : channels) {
-    if (channel == name) return true;
-  }
-  return false;
-}
 
 // A frame of another session is newer, whatever its number.
 bool IsNewer(const Header& a, const Header& b) { return a.session != b.session || a.seq > b.seq; }
@@ -49,24 +40,14 @@ void WriteHeader(const Header& header, void* data, std::size_t size) {
   }
 }
 
-bool IsInputChannel(const std::string& name) {
-  static constexpr std::array<const char*, 7> kInputs{
-      channel::kCameraLeft,          channel::kCameraRight,          channel::kCalibration,
-      channel::kPersonKeypointsLeft, channel::kPersonKeypointsRight, channel::kPersonMask,
-      channel::kGroundTruth};
-  return Contains(kInputs, name);
-}
-
-bool IsOutputChannel(const std::string& name) {
-  static constexpr std::array<const char*, 4> kOutputs{
-      channel::kStaticFeatures, channel::kHumanObservations, channel::kStateEstimate,
-      channel::kMapUpdate};
-  return Contains(kOutputs, name);
-}
-
 LogSource::LogSource(const std::string& path, std::int64_t first_seq, std::int64_t last_seq,
                      LogInputs inputs)
-    : reader_(path), first_seq_(first_seq), last_seq_(last_seq), inputs_(inputs) {}
+    : reader_(path), first_seq_(first_seq), last_seq_(last_seq), inputs_(inputs) {
+  const bool wants_features = inputs == LogInputs::kFeatures;
+  const std::string missing =
+      ExplainIfMissing(path, wants_features ? channel::kStaticFeatures : channel::kCameraLeft);
+  if (!missing.empty()) throw InputError(path + ": holds no message for the processes: " + missing);
+}
 
 std::optional<LogSource::Input> LogSource::ReadInput() {
   while (std::optional<LogEvent> event = reader_.Next()) {
@@ -122,9 +103,12 @@ std::optional<LogSource::Input> LogSource::NextInput() {
     Remember(input.header);
     const bool is_before =
         input.header.seq < first_seq_ && input.event.channel != channel::kCalibration;
-    if (!is_before && input.header.seq <= last_seq_) return input;
+    if (is_before || input.header.seq > last_seq_) continue;
+    pairing_.Add(input.event.channel, input.header);
+    return input;
   }
   NoteDamage();
+  NotePairing();
   return std::nullopt;
 }
 
@@ -140,11 +124,22 @@ std::vector<Envelope> LogSource::NextFrame() {
   }
   frame_ = next_->header;
   while (next_ && !IsNewer(next_->header, frame_) && frame.size() < kMaxFrameMessages) {
-    frame.push_back({std::move(next_->event.channel), std::move(next_->event.payload)});
+    frame.push_back(ToEnvelope(std::move(*next_)));
     next_ = NextInput();
   }
   is_at_end_ = !next_;
   return frame;
+}
+
+Envelope LogSource::ToEnvelope(Input input) {
+  Envelope message{std::move(input.event.channel), std::move(input.event.payload)};
+  if (first_session_) {
+    Header header = input.header;
+    const auto next = *first_session_ + static_cast<std::int64_t>(session_of_.size());
+    header.session = session_of_.emplace(header.session, next).first->second;
+    WriteHeader(header, message.payload.data(), message.payload.size());
+  }
+  return message;
 }
 
 double LogSource::fraction_done() const {
@@ -164,6 +159,17 @@ void LogSource::NoteDamage() {
   if (num_incredible_ > 0) {
     notes_.push_back(reader_.path() + ": " + std::to_string(num_incredible_) +
                      " messages left out: session or image number fit to nothing around them");
+  }
+}
+
+void LogSource::NotePairing() {
+  if (inputs_ == LogInputs::kFeatures) return;
+  if (!pairing_.Has(channel::kCameraRight))
+    notes_.push_back(reader_.path() + ": no message on CAMERA_RIGHT: nothing can be measured");
+  for (const LogPairing::Remark& remark : pairing_.Remarks()) {
+    notes_.push_back(reader_.path() + ": " + remark.channel +
+                     (remark.seq ? " " + std::to_string(*remark.seq) : std::string()) + ": " +
+                     remark.text);
   }
 }
 

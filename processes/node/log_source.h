@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,8 @@
 
 #include "processes/node/event_log.h"
 #include "processes/node/frame_joiner.h"
+#include "processes/node/log_channels.h"
+#include "processes/node/log_pairing.h"
 #include "processes/node/node.h"
 
 namespace airdos {
@@ -21,12 +24,6 @@ namespace airdos {
 std::optional<Header> PeekHeader(const void* data, std::size_t size);
 /// Puts another one in its place; nothing is done if the payload is too short.
 void WriteHeader(const Header& header, void* data, std::size_t size);
-
-/// The images and what else comes from outside (never what processes made of it).
-bool IsInputChannel(const std::string& channel);
-/// What the processes made, one message or more for each image: covered by the determinism
-/// contract.
-bool IsOutputChannel(const std::string& channel);
 
 /// Source of a run's input, frame by frame.
 class FrameSource {
@@ -53,18 +50,25 @@ enum class LogInputs {
 /// bit of a session or an image number, taken for true, would make all that follows late. A message
 /// of a new session, or of an image further ahead than the next one of its session, counts only
 /// if one of the next kLookahead messages agrees (the same session, not an older image), or if none
-/// follows. TakeNotes() tells how many were left out.
+/// follows. TakeNotes() tells how many were left out, and at the end which channels do not go with
+/// CAMERA_LEFT (LogPairing): the processes would wait for their messages in vain.
 class LogSource : public FrameSource {
  public:
   static constexpr std::size_t kLookahead = 16;
   /// A frame is handed out in pieces of at most so many messages.
   static constexpr std::size_t kMaxFrameMessages = 100;
 
-  /// Frames with first_seq <= seq <= last_seq; calibrations from before are kept.
+  /// Frames with first_seq <= seq <= last_seq; calibrations from before are kept. Throws InputError
+  /// where the file is no log, or has not one image (one message of STATIC_FEATURES, if those are
+  /// wanted): then it says what it has.
   explicit LogSource(const std::string& path,
                      std::int64_t first_seq = std::numeric_limits<std::int64_t>::min(),
                      std::int64_t last_seq = std::numeric_limits<std::int64_t>::max(),
                      LogInputs inputs = LogInputs::kImages);
+
+  /// Gives the sessions of the log new numbers: session, session + 1, … in their order, so that it
+  /// can be played into processes that have seen it already. Without it bytes are as in the log.
+  void RenumberSessions(std::int64_t session) { first_session_ = session; }
 
   /// Throws InputError where the log holds no message that it could give.
   std::vector<Envelope> NextFrame() override;
@@ -84,6 +88,8 @@ class LogSource : public FrameSource {
   bool IsCredible(const Header& header) const;
   void Remember(const Header& header);
   void NoteDamage();
+  void NotePairing();
+  Envelope ToEnvelope(Input input);
 
   EventLogReader reader_;
   std::int64_t first_seq_;
@@ -96,6 +102,9 @@ class LogSource : public FrameSource {
   std::deque<Header> newest_;  // of what was credible, one a session
   Header frame_;               // of the frame that is handed out
   std::optional<Input> next_;  // first message of the frame to come
+  LogPairing pairing_;
+  std::optional<std::int64_t> first_session_;        // of the new ones
+  std::map<std::int64_t, std::int64_t> session_of_;  // the new one of each of the log
   bool is_at_end_ = false;
 };
 

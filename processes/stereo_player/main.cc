@@ -23,8 +23,9 @@ int Play(const airdos::PlayerOptions& options, const airdos::CommonArguments& co
     airdos::WriteLog(options.write_log, first.get(), &std::cerr);
     return 0;
   }
-  const auto open = [&](int loop) {
-    return loop == 0 ? std::move(first) : airdos::OpenPlayerSource(options, session + loop);
+  const auto open = [&](int num_sessions) {
+    return num_sessions == 0 ? std::move(first)
+                             : airdos::OpenPlayerSource(options, session + num_sessions);
   };
   airdos::LcmTransport transport(common.lcm_url);
   airdos::PlayerLoop loop(options, open, &transport, &std::cerr);

@@ -62,11 +62,10 @@ std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std:
     return std::make_unique<DatasetSource>(options.data, options.first, last, session,
                                            options.image);
   }
-  if (options.session || options.num_loops != 1) {
-    throw InputError(options.data +
-                     ": a log has its own session: it goes without --session and --loop");
-  }
-  return std::make_unique<LogSource>(options.data, options.first, last);
+  auto log = std::make_unique<LogSource>(options.data, options.first, last);
+  // Unless asked for, a log is played as it is: its sessions are part of what others made of it.
+  if (options.session || options.num_loops != 1) log->RenumberSessions(session);
+  return log;
 }
 
 void WriteLog(const std::string& path, FrameSource* source, std::ostream* log) {
@@ -107,7 +106,7 @@ void PlayerLoop::Run() {
   const int num_loops = options_.is_one_session ? 1 : options_.num_loops;
   for (int loop = 0; loop < num_loops || num_loops == 0; ++loop) {
     if (StopRequested()) break;
-    PlayOnce(open_source_(loop).get());
+    PlayOnce(open_source_(std::max(loop, num_sessions_)).get());
   }
   if (options_.pace == PlayerPace::kLockstep) WaitUntilAllDone();
   std::ostringstream line;
@@ -124,6 +123,8 @@ void PlayerLoop::PlayOnce(FrameSource* source) {
     SayNotes(source);
     if (messages.empty()) return;
     const Header header = HeaderOfFrame(messages);
+    if (newest_session_ != header.session) ++num_sessions_;
+    newest_session_ = header.session;
     if (is_first || options_.pace == PlayerPace::kLockstep) WaitUntilMayPublish();
     if (options_.pace == PlayerPace::kRealtime) WaitForTime(header);
     if (StopRequested()) return;

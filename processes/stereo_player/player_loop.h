@@ -16,8 +16,9 @@
 
 namespace airdos {
 
-/// What `options` say is to be played. `session` is that of a data set; a log has its own. Throws
-/// InputError.
+/// What `options` say is to be played. `session` is that of a data set. A log keeps its own unless
+/// a session or several loops are asked for: then its sessions become `session`, session + 1, …
+/// Throws InputError.
 std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std::int64_t session);
 
 /// Writes what the player would publish as an LCM log; the times in it are capture times, so that
@@ -32,8 +33,9 @@ class PlayerLoop {
  public:
   static constexpr double kMaxGap_s = 10;  ///< of capture time
 
-  /// Opens the source for one more time; `loop` counts from 0.
-  using OpenSource = std::function<std::unique_ptr<FrameSource>(int loop)>;
+  /// Opens the source for one more time, after `num_sessions` were played: those to come must be
+  /// others.
+  using OpenSource = std::function<std::unique_ptr<FrameSource>(int num_sessions)>;
 
   /// The transport is not owned. `log` takes what people are to read, one line each.
   PlayerLoop(const PlayerOptions& options, OpenSource open_source, LcmTransport* transport,
@@ -61,6 +63,8 @@ class PlayerLoop {
   std::optional<Envelope> calibration_;  // the last one, for a process that comes later
   // Realtime pace: when the frame before was due on our clock, and its capture time.
   std::optional<std::pair<double, std::int64_t>> pace_;
+  int num_sessions_ = 0;
+  std::optional<std::int64_t> newest_session_;
   int num_jumps_ = 0;
   std::int64_t num_published_ = 0;
   std::int64_t num_not_published_ = 0;  // messages that the network did not take

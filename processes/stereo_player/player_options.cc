@@ -41,7 +41,8 @@ PlayerArguments::PlayerArguments(CLI::App* app) {
   app->add_option("--first", options_.first, "First frame")->check(CLI::NonNegativeNumber);
   app->add_option("--last", options_.last, "Last frame, included")->check(CLI::NonNegativeNumber);
   app->add_option("--session", options_.session,
-                  "Session number; default: the wall clock in us, or that of the log");
+                  "Session number; default: the wall clock in us; a log keeps its own unless it is "
+                  "given or --loop is");
   app->add_option("--loop", options_.num_loops, "How often to play, each a session; 0: for ever")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
@@ -73,6 +74,8 @@ PlayerOptions PlayerArguments::Resolve() const {
   if (options.data.empty()) throw InputError("--data FOLDER or LOG is missing");
   if (options.is_one_session && options.num_loops == 0)
     throw InputError("--one-session needs a --loop that ends");
+  if (!options.write_log.empty() && options.num_loops != 1 && !options.is_one_session)
+    throw InputError("--write-log writes what is played once: with --loop it needs --one-session");
   options.pace = pace_ == "lockstep" ? PlayerPace::kLockstep : PlayerPace::kRealtime;
   options.image.encoding = encoding_ == "auto"   ? Encoding::kAuto
                            : encoding_ == "jpeg" ? Encoding::kJpeg

@@ -16,6 +16,9 @@ int main(int argc, char** argv) {
       ->required();
   app.add_option("--channels", options.channels, "regular expression of the channels")
       ->capture_default_str();
+  app.add_flag("--inputs-only", options.inputs_only,
+               "only images and what else comes from outside, nothing that the processes made of "
+               "it: such a log can be played into running processes");
   app.add_option("--flush-s", options.flush_s, "the disk is told to keep what came this often (s)")
       ->check(CLI::Range(0.01, 1e6))
       ->capture_default_str();

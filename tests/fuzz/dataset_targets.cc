@@ -96,7 +96,10 @@ void Play(const std::string& folder) {
 void Check(const std::string& folder) {
   FindingList findings;
   try {
-    CheckFolder(folder, {2, 2}, &findings);
+    CheckOptions options;
+    options.max_frames = 2;
+    options.odometry_frames = 2;
+    CheckFolder(folder, options, &findings);
   } catch (const InputError&) {
   }
   JsonText(findings.ToJson(folder));

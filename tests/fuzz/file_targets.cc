@@ -61,7 +61,10 @@ void RunCheckLog(const std::uint8_t* data, std::size_t size) {
   const std::string path = FuzzFolder::Write("check.lcm", data, size);
   FindingList findings;
   try {
-    CheckLog(path, {2, 2}, &findings);
+    CheckOptions options;
+    options.max_frames = 2;
+    options.odometry_frames = 2;
+    CheckLog(path, options, &findings);
   } catch (const InputError&) {
   }
   JsonText(findings.ToJson(path));

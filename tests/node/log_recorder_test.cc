@@ -56,6 +56,23 @@ TEST_F(LogRecorderTest, WritesWhatArrivesAsItArrives) {
   EXPECT_FALSE(reader.Next());
 }
 
+TEST_F(LogRecorderTest, InputsOnlyLeavesOutWhatProcessesMade) {
+  options_.inputs_only = true;
+  {
+    LogRecorder recorder(options_);
+    for (const char* name : {channel::kCameraLeft, channel::kStateEstimate, channel::kCalibration,
+                             channel::kStatus, channel::kFrameDone, channel::kGroundTruth}) {
+      Take(TextEnvelope(name, 0, "x"), &recorder);
+    }
+    Take({"ANYTHING", {1, 2, 3}}, &recorder);
+  }
+  EventLogReader reader(options_.path);
+  std::vector<std::string> names;
+  while (const auto event = reader.Next()) names.push_back(event->channel);
+  EXPECT_EQ(names, (std::vector<std::string>{channel::kCameraLeft, channel::kCalibration,
+                                             channel::kGroundTruth}));
+}
+
 TEST_F(LogRecorderTest, GapsAreThoseOfTheImageNumberWithinASession) {
   LogRecorder recorder(options_);
   TakeSeqs(channel::kCameraLeft, {5, 6, 9, 10}, 7, &recorder);  // the first may have any number
