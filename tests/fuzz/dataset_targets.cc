@@ -2,9 +2,11 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/check/check_folder.h"
+#include "common/dataset/keypoint_file.h"
 #include "common/dataset/oxts.h"
 #include "common/dataset/sequence_files.h"
 #include "common/dataset/stereo_sequence.h"
+#include "common/dataset/times_file.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
 #include "processes/stereo_player/stereo_player.h"
@@ -96,7 +98,7 @@ void Play(const std::string& folder) {
 void Check(const std::string& folder) {
   FindingList findings;
   try {
-    CheckFolder(folder, {2, 2}, &findings);
+    CheckFolder(folder, {2, 2, ""}, &findings);
   } catch (const InputError&) {
   }
   JsonText(findings.ToJson(folder));
