@@ -5,8 +5,10 @@
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
+#include "common/check/check_files.h"
 #include "common/check/check_jpeg.h"
 #include "common/check/check_people.h"
+#include "common/dataset/keypoint_file.h"
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
 
@@ -26,13 +28,14 @@ std::string FirstOf(const std::string& folder, const std::vector<std::string>& n
 CheckedPeople ReadPeople(const std::string& path, FindingList* findings) {
   CheckedPeople result;
   result.where = path;
-  std::vector<PersonKeypoints> people;
+  KeypointFile file;
   try {
-    people = ReadRawKeypoints(path);
+    file = ReadRawKeypoints(path);
   } catch (const InputError& error) {
     findings->FailFrom("keypoints.file", error.what());
   }
-  for (const PersonKeypoints& person : people) {
+  if (file.layout) result.layout = *file.layout;
+  for (const PersonKeypoints& person : file.people) {
     std::vector<BodyKeypoint> joints;
     for (const Keypoint& point : person) {
       joints.push_back({point.u_px, point.v_px, point.confidence});
@@ -183,19 +186,18 @@ void CheckFolder(const std::string& folder, const CheckOptions& options, Finding
                            fs::is_directory(folder + "/image_l") ||
                            fs::exists(folder + "/calib.txt");
   try {
-    sequence = OpenStereoSequence(folder);
+    sequence = OpenStereoSequence(folder, {options.calibration});
   } catch (const InputError& error) {
     if (!is_sequence) throw;
     findings->FailFrom("folder", error.what());
+    ReportUnreadFiles(folder, findings);  // they may be the cause
     return;
   }
-  for (const std::string& note : sequence->notes()) {
-    const std::size_t end = std::min(note.find(": "), note.find(" is not there"));
-    findings->Warn("folder.assumed", end == std::string::npos ? "" : note.substr(0, end),
-                   end == std::string::npos ? note : note.substr(end + (note[end] == ':' ? 2 : 1)));
-  }
+  ReportNotes(*sequence, findings);
+  ReportUnreadFiles(folder, findings);
   const FolderInput input(folder, std::move(sequence));
   CheckCounts(input.sequence(), findings);
+  ReportLayout(input.sequence(), findings);
   CheckKeypoints(input.sequence(), findings);
   CheckCompression(input, input.sequence(), options.max_frames, findings);
   CheckFrames(input, options, findings);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/check/check_axes.h"
+#include "common/check/check_camera.h"
 #include "common/check/check_people.h"
 #include "common/check/check_stereo.h"
 #include "common/check/check_times.h"

@@ -61,6 +61,7 @@ struct CheckOptions {
   Depth depth = Depth::kFull;
   std::size_t max_frames = 20;       ///< whose pictures are looked at, evenly spread
   std::size_t odometry_frames = 30;  ///< to compare with the ground truth; 0: none
+  std::string calibration = {};      ///< of a folder: SequenceOptions::calibration
 };
 
 /// `count` numbers evenly spread over 0 .. size - 1, first and last included; all if they are

@@ -16,49 +16,7 @@ std::string SizeOf(const cv::Mat& image) {
   return std::to_string(image.cols) + " x " + std::to_string(image.rows);
 }
 
-/// " (12.5 in mm?)" where a thousandth or a hundredth would be plausible.
-std::string UnitHint(double baseline_m) {
-  for (const auto& [unit, factor] : {std::make_pair("mm", 1e-3), std::make_pair("cm", 1e-2)}) {
-    const double value_m = baseline_m * factor;
-    if (value_m >= 0.02 && value_m <= 2) {
-      return std::string("; in ") + unit + " instead of m it would be " + Brief(value_m) + " m";
-    }
-  }
-  return "";
-}
-
 }  // namespace
-
-void CheckCamera(const StereoCamera& camera, const std::string& where, FindingList* findings) {
-  const double baseline_m = camera.baseline_m;
-  const std::string baseline =
-      "baseline of " + Brief(baseline_m) + " m is " + (baseline_m < 0.02 ? "short" : "long");
-  if (baseline_m < 0.005 || baseline_m > 5) {
-    findings->Fail("camera.baseline", where, "a " + baseline + UnitHint(baseline_m));
-  } else if (baseline_m < 0.02 || baseline_m > 2) {
-    findings->Warn("camera.baseline", where, "a " + baseline + UnitHint(baseline_m));
-  }
-  const double ratio = camera.fx_px / camera.width;
-  const std::string focal = "focal length of " + Brief(camera.fx_px) + " px for images " +
-                            std::to_string(camera.width) + " px wide is implausible";
-  if (ratio < 0.1 || ratio > 20) {
-    findings->Fail("camera.focal_length", where, focal + "; is it in px of these images?");
-  } else if (ratio < 0.3 || ratio > 4) {
-    findings->Warn("camera.focal_length", where, focal);
-  }
-  if (std::abs(camera.fy_px / camera.fx_px - 1) > 0.1) {
-    findings->Warn("camera.focal_length", where,
-                   "fx " + Brief(camera.fx_px) + " and fy " + Brief(camera.fy_px) +
-                       " differ by more than a tenth");
-  }
-  if (std::abs(camera.cx_px / camera.width - 0.5) > 0.25 ||
-      std::abs(camera.cy_px / camera.height - 0.5) > 0.25) {
-    findings->Warn("camera.principal_point", where,
-                   "the principal point " + Brief(camera.cx_px) + " " + Brief(camera.cy_px) +
-                       " lies far from the middle of images of " + std::to_string(camera.width) +
-                       " x " + std::to_string(camera.height) + " px");
-  }
-}
 
 void StereoCheck::Add(const std::string& where_left, const cv::Mat& left,
                       const std::string& where_right, const cv::Mat& right, FindingList* findings) {

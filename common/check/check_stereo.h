@@ -10,10 +10,6 @@
 
 namespace airdos {
 
-/// Whether numbers can be those of a stereo pair in px and m: focal length 0.3 to 4 times the
-/// width, principal point in the middle half, baseline 2 cm to 2 m.
-void CheckCamera(const StereoCamera& camera, const std::string& where, FindingList* findings);
-
 /// Whether pairs of images are what they are said to be: of one size, left and right (disparities
 /// are positive), different, rectified (matches lie on one row), and at plausible depths. Corners
 /// are matched by descriptor without regard to rows or signs, then aligned to a fraction of a

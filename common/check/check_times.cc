@@ -35,20 +35,34 @@ void CheckRate(double period_s, const std::string& where, FindingList* findings)
   }
 }
 
+/// Times that repeat or go back.
+void CheckOrder(const std::vector<std::int64_t>& utimes, const std::string& where,
+                FindingList* findings) {
+  if (utimes.size() > 2 && std::equal(utimes.begin() + 1, utimes.end(), utimes.begin())) {
+    findings->Fail("times.order", where,
+                   "all " + std::to_string(utimes.size()) + " images have one time, " +
+                       std::to_string(utimes[0]) + " us");
+    return;
+  }
+  for (std::size_t i = 1; i < utimes.size(); ++i) {
+    const double interval_s = 1e-6 * static_cast<double>(utimes[i] - utimes[i - 1]);
+    if (interval_s > 0) continue;
+    findings->Fail(
+        "times.order", where,
+        "image " + std::to_string(i) +
+            (interval_s == 0 ? " has the time of the one before"
+                             : " comes " + Brief(-interval_s) + " s before the one before it"));
+  }
+}
+
 }  // namespace
 
 void CheckTimes(const std::vector<std::int64_t>& utimes, const std::string& where,
                 FindingList* findings) {
+  CheckOrder(utimes, where, findings);
   std::vector<double> intervals_s;
   for (std::size_t i = 1; i < utimes.size(); ++i) {
-    const double interval_s = 1e-6 * static_cast<double>(utimes[i] - utimes[i - 1]);
-    intervals_s.push_back(interval_s);
-    if (interval_s > 0) continue;
-    findings->Fail("times.order", where,
-                   "image " + std::to_string(i) +
-                       (interval_s == 0
-                            ? " has the time of the one before"
-                            : " comes " + Brief(-interval_s) + " s before the one " + "before it"));
+    intervals_s.push_back(1e-6 * static_cast<double>(utimes[i] - utimes[i - 1]));
   }
   if (intervals_s.empty()) return;
   const double period_s = Quantile(intervals_s, 0.5);

@@ -1,8 +1,12 @@
 #include "common/dataset/folder_sequence.h"
 
+#include <algorithm>
 #include <filesystem>
 
+#include "common/dataset/image_rows.h"
+#include "common/dataset/keypoint_file.h"
 #include "common/dataset/sequence_files.h"
+#include "common/dataset/times_file.h"
 #include "common/util/check.h"
 #include "common/util/error.h"
 
@@ -13,83 +17,132 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kAssumedPeriodUs = 100000;  // both public sets run at 10 Hz
 
-void CheckSameNames(const FolderSequence::Contents& contents) {
-  const std::string left = contents.folder + "/" + contents.left_folder;
-  const std::string right = contents.folder + "/" + contents.right_folder;
-  if (contents.left_names.empty()) throw InputError(left + ": holds no .png or .jpg image");
-  if (contents.left_names.size() != contents.right_names.size()) {
-    throw InputError(right + ": holds " + std::to_string(contents.right_names.size()) +
-                     " images, but " + left + " holds " +
-                     std::to_string(contents.left_names.size()));
+/// The usual step from number to number: 5 where every fifth image was kept.
+std::uint64_t UsualStep(const std::vector<std::uint64_t>& numbers) {
+  std::vector<std::uint64_t> steps;
+  for (std::size_t i = 1; i < numbers.size(); ++i) steps.push_back(numbers[i] - numbers[i - 1]);
+  if (steps.empty()) return 1;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>((steps.size() - 1) / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+/// 10 Hz; an image that is missing leaves a gap, if not of years.
+void AssumeTimes(const std::string& path, FolderSequence::Contents* contents) {
+  const std::vector<std::uint64_t>& numbers = contents->left.numbers;
+  const std::uint64_t step = UsualStep(numbers);
+  constexpr std::uint64_t kMaxSteps = 1000000;
+  const bool are_counts =
+      !numbers.empty() && (numbers.back() - numbers.front()) / step <= kMaxSteps;
+  bool has_gaps = false;
+  for (std::size_t i = 0; i < contents->left.files.size(); ++i) {
+    const auto in_order = static_cast<std::int64_t>(i) * kAssumedPeriodUs;
+    const std::int64_t by_number = are_counts
+                                       ? static_cast<std::int64_t>(numbers[i] - numbers[0]) *
+                                             kAssumedPeriodUs / static_cast<std::int64_t>(step)
+                                       : in_order;
+    has_gaps = has_gaps || by_number != in_order;
+    contents->utimes.push_back(by_number);
   }
-  for (std::size_t i = 0; i < contents.left_names.size(); ++i) {
-    if (fs::path(contents.left_names[i]).stem() != fs::path(contents.right_names[i]).stem()) {
-      throw InputError(left + "/" + contents.left_names[i] + ": has no partner in " + right);
+  contents->notes.push_back(path + " is not there: the images are taken to be 0.1 s apart" +
+                            (has_gaps ? ", more where numbers are missing" : ""));
+}
+
+void FillTimes(FolderSequence::Contents* contents) {
+  const std::string path = contents->folder + "/times.txt";
+  if (fs::exists(path)) {
+    const std::vector<std::int64_t> utimes = ReadTimes(path);
+    for (const std::size_t row :
+         RowsOfImages(path, "times", utimes.size(), contents->left, &contents->notes)) {
+      contents->utimes.push_back(utimes[row]);
     }
+    return;
   }
+  const std::optional<NamedTimes> named = TimesFromNames(contents->left);
+  if (!named) return AssumeTimes(path, contents);
+  contents->utimes = named->utimes;
+  contents->notes.push_back(path + " is not there: the times are those in the images' names, in " +
+                            named->unit);
 }
 
 }  // namespace
 
-FolderSequence::FolderSequence(Contents contents)
-    : contents_(std::move(contents)), has_people_(fs::is_directory(PeopleFolder("alphapose_0"))) {
-  AIRDOS_CHECK(contents_.left_names.size() == contents_.right_names.size());
-  AIRDOS_CHECK(contents_.left_names.size() == contents_.utimes.size());
-  contents_.ground_truth.resize(contents_.left_names.size());
+FolderSequence::FolderSequence(Contents contents) : contents_(std::move(contents)) {
+  const std::size_t num_images = contents_.left.files.size();
+  AIRDOS_CHECK(num_images == contents_.right.files.size());
+  AIRDOS_CHECK(num_images == contents_.utimes.size());
+  contents_.ground_truth.resize(num_images);
+
+  const std::vector<std::string> masks = PeopleFiles("rcnnseg_image_0", ".png");
+  const std::vector<std::string> left = PeopleFiles("alphapose_0", ".txt");
+  const std::vector<std::string> right = PeopleFiles("alphapose_1", ".txt");
+  for (std::size_t i = 0; i < num_images; ++i) {
+    files_.push_back({contents_.left.folder + "/" + contents_.left.files[i],
+                      contents_.right.folder + "/" + contents_.right.files[i], masks[i], left[i],
+                      right[i]});
+  }
+  has_people_ = fs::is_directory(fs::path(left[0]).parent_path());
+  std::vector<std::string> keypoints = left;
+  keypoints.insert(keypoints.end(), right.begin(), right.end());
+  keypoint_layout_ = FindLayout(keypoints).value_or(KeypointLayout::kCoco18);
 }
 
-std::string FolderSequence::PeopleFolder(const std::string& name) const {
-  const std::string folder = contents_.folder + "/" + name;
-  return contents_.people_subfolder.empty() ? folder : folder + "/" + contents_.people_subfolder;
+/// Of each image; where there is none, the name that it would have.
+std::vector<std::string> FolderSequence::PeopleFiles(const std::string& name,
+                                                     const std::string& ending) const {
+  std::string folder = contents_.folder + "/" + name;
+  if (!contents_.people_subfolder.empty()) folder += "/" + contents_.people_subfolder;
+  std::vector<std::string> files = FindPartners(folder, ending, contents_.left, contents_.right);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (files[i].empty()) files[i] = fs::path(contents_.left.files[i]).stem().string() + ending;
+    files[i] = folder + "/" + files[i];
+  }
+  return files;
 }
 
 FrameFiles FolderSequence::files(std::size_t index) const {
   AIRDOS_CHECK(index < num_frames());
-  const std::string& folder = contents_.folder;
-  const std::string stem = fs::path(contents_.left_names[index]).stem().string();
-  FrameFiles files;
-  files.left_image = folder + "/" + contents_.left_folder + "/" + contents_.left_names[index];
-  files.right_image = folder + "/" + contents_.right_folder + "/" + contents_.right_names[index];
-  files.person_mask = PeopleFolder("rcnnseg_image_0") + "/" + stem + ".png";
-  files.keypoints_left = PeopleFolder("alphapose_0") + "/" + stem + ".txt";
-  files.keypoints_right = PeopleFolder("alphapose_1") + "/" + stem + ".txt";
-  return files;
+  return files_[index];
 }
 
 SequenceFrame FolderSequence::Load(std::size_t index) const {
-  const FrameFiles names = files(index);
+  const FrameFiles& names = files_[index];
   SequenceFrame frame;
   frame.utime = contents_.utimes[index];
   frame.left_image_file = ReadImageFile(names.left_image);
   frame.right_image_file = ReadImageFile(names.right_image);
   if (fs::exists(names.person_mask)) frame.person_mask_file = ReadImageFile(names.person_mask);
-  frame.keypoints_left = ReadKeypoints(names.keypoints_left);
-  frame.keypoints_right = ReadKeypoints(names.keypoints_right);
+  frame.keypoint_layout = keypoint_layout_;
+  const auto read_people = [&](const std::string& path) {
+    KeypointFile file = ReadKeypoints(path);
+    if (file.layout && file.layout != keypoint_layout_) {  // the files were exchanged meanwhile
+      throw InputError(path + ": holds people in " + NameOf(*file.layout) + ", others are in " +
+                       NameOf(keypoint_layout_));
+    }
+    return std::move(file.people);
+  };
+  frame.keypoints_left = read_people(names.keypoints_left);
+  frame.keypoints_right = read_people(names.keypoints_right);
   frame.ground_truth = contents_.ground_truth[index];
   return frame;
 }
 
 void FillImagesAndTimes(FolderSequence::Contents* contents) {
-  contents->left_names = ListImages(contents->folder + "/" + contents->left_folder);
-  contents->right_names = ListImages(contents->folder + "/" + contents->right_folder);
-  CheckSameNames(*contents);
-
-  const std::size_t num_images = contents->left_names.size();
-  const std::string path = contents->folder + "/times.txt";
-  if (!fs::exists(path)) {
-    contents->notes.push_back(path + " is not there: the images are taken to be 0.1 s apart");
-    for (std::size_t i = 0; i < num_images; ++i) {
-      contents->utimes.push_back(static_cast<std::int64_t>(i) * kAssumedPeriodUs);
-    }
-    return;
+  contents->left = ListImages(contents->folder + "/" + contents->left_folder);
+  contents->right = ListImages(contents->folder + "/" + contents->right_folder);
+  CheckPairs(contents->left, contents->right);
+  for (const ImageNames* names : {&contents->left, &contents->right}) {
+    contents->notes.insert(contents->notes.end(), names->notes.begin(), names->notes.end());
   }
-  contents->utimes = ReadTimes(path);
-  const std::string counts = path + ": holds " + std::to_string(contents->utimes.size()) +
-                             " times for " + std::to_string(num_images) + " images";
-  if (contents->utimes.size() < num_images) throw InputError(counts);
-  if (contents->utimes.size() > num_images) {
-    contents->notes.push_back(counts + ": the last ones are not used");
-    contents->utimes.resize(num_images);
+  FillTimes(contents);
+}
+
+void FillPosesByRow(const std::string& path, const std::string& what, const std::vector<Se3>& poses,
+                    FolderSequence::Contents* contents) {
+  contents->ground_truth.clear();
+  for (const std::size_t row :
+       RowsOfImages(path, what, poses.size(), contents->left, &contents->notes)) {
+    contents->ground_truth.emplace_back(poses[row]);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/dataset/image_names.h"
 #include "common/dataset/stereo_sequence.h"
 
 namespace airdos {
@@ -20,18 +21,19 @@ class FolderSequence : public StereoSequence {
     /// sequence are; empty: directly there.
     std::string people_subfolder;
     StereoCamera camera;
-    std::vector<std::string> left_names;
-    std::vector<std::string> right_names;  ///< of the same images
-    std::vector<std::int64_t> utimes;      ///< us, of the same images
+    ImageNames left;
+    ImageNames right;                  ///< of the same keys
+    std::vector<std::int64_t> utimes;  ///< us, of each image
     std::vector<std::optional<Se3>> ground_truth;
     TrajectoryAxes axes = TrajectoryAxes::kUnknown;
     std::vector<std::string> notes;
   };
 
+  /// Looks up the people's files. Throws InputError where their keypoints have several layouts.
   explicit FolderSequence(Contents contents);
 
   const StereoCamera& camera() const override { return contents_.camera; }
-  std::size_t num_frames() const override { return contents_.left_names.size(); }
+  std::size_t num_frames() const override { return contents_.left.files.size(); }
   TrajectoryAxes ground_truth_axes() const override { return contents_.axes; }
   bool has_people() const override { return has_people_; }
   SequenceFrame Load(std::size_t index) const override;
@@ -43,15 +45,22 @@ class FolderSequence : public StereoSequence {
   std::vector<std::string> notes() const override { return contents_.notes; }
 
  private:
-  std::string PeopleFolder(const std::string& name) const;
+  std::vector<std::string> PeopleFiles(const std::string& name, const std::string& ending) const;
 
   Contents contents_;
-  bool has_people_;
+  std::vector<FrameFiles> files_;
+  bool has_people_ = false;
+  KeypointLayout keypoint_layout_ = KeypointLayout::kCoco18;
 };
 
-/// Fills in names and times: the images of both folders must have the same names but for the
-/// ending. times.txt must have a time for each image; further ones are noted. Without it: 10 Hz.
+/// Fills in names and times: the images of both folders must have the same numbers. times.txt has
+/// a time for each image, or for each number (RowsOfImages()). Without it the times are those in
+/// the names, else 0.1 s a number; that is noted.
 void FillImagesAndTimes(FolderSequence::Contents* contents);
+
+/// Fills in the ground truth from a file of one pose an image (or number).
+void FillPosesByRow(const std::string& path, const std::string& what, const std::vector<Se3>& poses,
+                    FolderSequence::Contents* contents);
 
 }  // namespace airdos
 

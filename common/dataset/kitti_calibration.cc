@@ -3,6 +3,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "common/dataset/camera_causes.h"
 #include "common/util/error.h"
 
 namespace airdos {
@@ -38,7 +39,7 @@ StereoCamera MakeStereoCamera(const std::string& path, const KittiProjection& le
     throw InputError(where + ": no pinhole pair for images of " + std::to_string(camera.width) +
                      " x " + std::to_string(camera.height) + " px (focal length " +
                      std::to_string(camera.fx_px) + " px, baseline " +
-                     std::to_string(camera.baseline_m) + " m)");
+                     std::to_string(camera.baseline_m) + " m): " + WhyNoCamera(camera));
   }
   return camera;
 }

@@ -103,16 +103,10 @@ void FillGroundTruth(const CalibrationFile& calibration, const KittiProjection& 
     return;
   }
   const std::vector<Se3> T_W_I = ReadOxts(oxts_path);
-  const std::size_t num_images = contents->left_names.size();
-  if (T_W_I.size() != num_images) {
-    contents->notes.push_back(oxts_path + ": holds " + std::to_string(T_W_I.size()) +
-                              " records for " + std::to_string(num_images) + " images");
-  }
-  contents->ground_truth.resize(num_images);
   const Se3 T_I_C = T_C_I->inverse();
-  for (std::size_t i = 0; i < std::min(num_images, T_W_I.size()); ++i) {
-    contents->ground_truth[i] = (T_W_I[0] * T_I_C).inverse() * T_W_I[i] * T_I_C;
-  }
+  std::vector<Se3> T_C0_C;
+  for (const Se3& pose : T_W_I) T_C0_C.push_back((T_W_I[0] * T_I_C).inverse() * pose * T_I_C);
+  FillPosesByRow(oxts_path, "records", T_C0_C, contents);
   contents->axes = TrajectoryAxes::kOptical;
 }
 
@@ -135,9 +129,9 @@ std::unique_ptr<StereoSequence> OpenKittiTrackingSequence(const std::string& fol
 
   const CalibrationFile calibration((split / "calib" / (name + ".txt")).string());
   const KittiProjection left = calibration.Projection("P2");
-  contents.camera = MakeStereoCamera(
-      calibration.path(), left, calibration.Projection("P3"),
-      ReadImageSize(contents.folder + "/" + contents.left_folder + "/" + contents.left_names[0]));
+  contents.camera =
+      MakeStereoCamera(calibration.path(), left, calibration.Projection("P3"),
+                       ReadImageSize(contents.left.folder + "/" + contents.left.files[0]));
   FillGroundTruth(calibration, left, (split / "oxts" / (name + ".txt")).string(), &contents);
   return std::make_unique<FolderSequence>(std::move(contents));
 }

@@ -10,6 +10,7 @@
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/dataset/times_file.h"
 #include "common/util/error.h"
 #include "common/util/image_header.h"
 #include "common/util/text_file.h"
@@ -23,20 +24,6 @@ constexpr std::uintmax_t kMaxFileBytes = 32u << 20;  // of an image
 
 [[noreturn]] void Fail(const std::string& path, int line, const std::string& why) {
   throw InputError(path + ":" + std::to_string(line) + ": " + why);
-}
-
-/// The number that a file name starts with; names without one come last.
-std::uint64_t LeadingNumber(const std::string& name) {
-  constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
-  if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) == 0) return kNone;
-  return std::strtoull(name.c_str(), nullptr, 10);
-}
-
-bool IsImageName(const fs::path& name) {
-  std::string extension = name.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".png" || extension == ".jpg" || extension == ".jpeg";
 }
 
 bool AllDigits(const std::string& text) {
@@ -104,19 +91,6 @@ std::pair<int, int> ReadImageSize(const std::string& path) {
   return {image.cols, image.rows};
 }
 
-std::vector<std::string> ListImages(const std::string& folder) {
-  std::error_code error;
-  std::vector<std::string> names;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (IsImageName(it->path())) names.push_back(it->path().filename().string());
-  }
-  if (error) throw InputError(folder + ": " + error.message());
-  std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
-    return std::make_pair(LeadingNumber(a), a) < std::make_pair(LeadingNumber(b), b);
-  });
-  return names;
-}
-
 bool ParseMicroseconds(const std::string& seconds, std::int64_t* utime) {
   const bool is_negative = !seconds.empty() && seconds[0] == '-';
   const bool is_signed = is_negative || (!seconds.empty() && seconds[0] == '+');
@@ -140,55 +114,19 @@ bool ParseMicroseconds(const std::string& seconds, std::int64_t* utime) {
   return true;
 }
 
-std::vector<std::int64_t> ReadTimes(const std::string& path) {
-  std::vector<std::int64_t> times;
-  for (const TextLine& line : ReadTextLines(path)) {
-    std::int64_t utime = 0;
-    if (line.words.size() != 1 || !ParseMicroseconds(line.words[0], &utime)) {
-      Fail(path, line.number, "must hold one time in s, holds '" + line.words[0] + "' ...");
-    }
-    if (!times.empty() && utime <= times.back()) {
-      Fail(path, line.number, "time '" + line.words[0] + "' does not come after the one before");
-    }
-    times.push_back(utime);
-  }
-  return times;
-}
-
-std::vector<PersonKeypoints> ReadRawKeypoints(const std::string& path) {
-  std::vector<PersonKeypoints> people;
-  if (!fs::exists(path)) return people;
-  for (const TextLine& line : ReadTextLines(path)) {
-    const std::vector<double> numbers = ParseNumbers(path, line, 0);
-    PersonKeypoints person;
-    if (numbers.size() != 3 * person.size()) {
-      Fail(path, line.number,
-           "must hold 54 numbers (18 x u v confidence), holds " + std::to_string(numbers.size()));
-    }
-    for (std::size_t j = 0; j < person.size(); ++j) {
-      person[j] = {static_cast<float>(numbers[3 * j]), static_cast<float>(numbers[3 * j + 1]),
-                   static_cast<float>(numbers[3 * j + 2])};
-    }
-    people.push_back(person);
-  }
-  return people;
-}
-
-std::vector<PersonKeypoints> ReadKeypoints(const std::string& path) {
-  std::vector<PersonKeypoints> people = ReadRawKeypoints(path);
-  for (PersonKeypoints& person : people) {
-    for (Keypoint& keypoint : person)
-      keypoint.confidence = std::clamp(keypoint.confidence, 0.F, 1.F);
-  }
-  return people;
-}
-
 std::vector<Se3> ReadKittiPoses(const std::string& path) {
   std::vector<Se3> poses;
   for (const TextLine& line : ReadTextLines(path)) {
+    const std::string separators = ExplainSeparators(line);
+    if (!separators.empty()) Fail(path, line.number, "must hold 12 numbers (3 x 4)" + separators);
     const std::vector<double> m = ParseNumbers(path, line, 0);
     if (m.size() != 12) {
-      Fail(path, line.number, "must hold 12 numbers (3 x 4), holds " + std::to_string(m.size()));
+      const char* const rows_with_times =
+          m.size() == 8 ? ": these are `t tx ty tz qx qy qz qw`, read in the layout with calib.json"
+          : m.size() == 13 ? ": the first is an image number or time, leave it out"
+                           : "";
+      Fail(path, line.number,
+           "must hold 12 numbers (3 x 4), holds " + std::to_string(m.size()) + rows_with_times);
     }
     Eigen::Matrix3d R;
     R << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];

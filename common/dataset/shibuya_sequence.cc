@@ -1,13 +1,14 @@
 #include "common/dataset/shibuya_sequence.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <map>
-#include <nlohmann/json.hpp>
 
+#include "common/dataset/calib_json.h"
 #include "common/dataset/folder_sequence.h"
 #include "common/dataset/sequence_files.h"
+#include "common/dataset/times_file.h"
 #include "common/util/error.h"
 #include "common/util/text_file.h"
 
@@ -16,7 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxJsonBytes = 100000;
 constexpr std::int64_t kMaxTimeDifferenceUs = 1000;  // times are written with at least ms
 
 StereoCamera PublicCamera() {
@@ -30,61 +30,30 @@ StereoCamera PublicCamera() {
   return camera;
 }
 
-double ReadNumber(const nlohmann::json& json, const std::string& path, const std::string& key) {
-  if (!json.contains(key)) throw InputError(path + ": key '" + key + "' is missing");
-  if (!json[key].is_number()) {
-    // Its value may be nested more deeply than dump() bears.
-    throw InputError(path + ": key '" + key + "' with a value of type " + json[key].type_name() +
-                     ": must be a number");
-  }
-  return json[key].get<double>();
-}
-
-StereoCamera ReadCalibJson(const std::string& path, std::pair<int, int> size) {
-  const std::vector<std::uint8_t> text = ReadBytes(path);
-  if (text.size() > kMaxJsonBytes) {
-    throw InputError(path + ": holds more than " + std::to_string(kMaxJsonBytes) + " bytes");
-  }
-  const nlohmann::json json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object()) throw InputError(path + ": is no JSON object");
-  StereoCamera camera;
-  std::tie(camera.width, camera.height) = size;
-  for (const auto& [key, actual] : {std::make_pair("width", size.first), {"height", size.second}}) {
-    if (json.contains(key) && ReadNumber(json, path, key) != actual) {
-      throw InputError(path + ": key '" + key + "' with value '" + json[key].dump() +
-                       "': the first image has " + std::to_string(actual) + " px");
-    }
-  }
-  camera.fx_px = ReadNumber(json, path, "fx");
-  camera.fy_px = ReadNumber(json, path, "fy");
-  camera.cx_px = ReadNumber(json, path, "cx");
-  camera.cy_px = ReadNumber(json, path, "cy");
-  camera.baseline_m = ReadNumber(json, path, "baseline_m");
-  if (!camera.IsValid()) {
-    throw InputError(path + ": no pinhole pair for images of " + std::to_string(camera.width) +
-                     " x " + std::to_string(camera.height) + " px");
-  }
-  return camera;
-}
-
-void FillCamera(FolderSequence::Contents* contents) {
-  const std::string first_image =
-      contents->folder + "/" + contents->left_folder + "/" + contents->left_names[0];
+/// The camera that was asked for by name, or that of the folder.
+void FillCamera(const SequenceOptions& options, FolderSequence::Contents* contents) {
+  const std::string first_image = contents->left.folder + "/" + contents->left.files[0];
   const std::pair<int, int> size = ReadImageSize(first_image);
   const std::string path = contents->folder + "/calib.json";
-  if (fs::exists(path)) {
+  if (options.calibration.empty()) {
+    if (!fs::exists(path)) {
+      throw InputError(path + ": is not there; write " + kCalibJsonForm +
+                       ", or ask for the camera of the public set with --calibration " +
+                       kPublicCalibration);
+    }
     contents->camera = ReadCalibJson(path, size);
     return;
   }
   contents->camera = PublicCamera();
   if (size != std::make_pair(contents->camera.width, contents->camera.height)) {
-    throw InputError(path + ": is not there, and " + first_image + " with " +
-                     std::to_string(size.first) + " x " + std::to_string(size.second) +
-                     " px is not of the public set (640 x 360)");
+    throw InputError(first_image + ": with " + std::to_string(size.first) + " x " +
+                     std::to_string(size.second) + " px is not of the public set (640 x 360), " +
+                     "whose calibration '" + options.calibration + "' was asked for");
   }
-  contents->notes.push_back(path +
-                            " is not there: the calibration of the public TartanAir-Shibuya set is "
-                            "used (f 772.548 px, centre 320 180, baseline 0.25 m)");
+  if (fs::exists(path)) {
+    contents->notes.push_back(path + ": is not used, as calibration '" + options.calibration +
+                              "' was asked for");
+  }
 }
 
 /// One row of gt_pose.txt.
@@ -93,64 +62,122 @@ struct TimedPose {
   Se3 pose;
 };
 
+/// What a line that is not read looks like, "; ..." or empty.
+std::string ExplainPoseLine(const TextLine& line) {
+  const std::string separators = ExplainSeparators(line);
+  const auto num_commas = std::count(line.words[0].begin(), line.words[0].end(), ',');
+  if (num_commas >= 7) {
+    return "; this is csv, as EuRoC's state_groundtruth has it (ns, position, q_w first): awk -F, "
+           "'!/^#/{printf \"%.6f %s %s %s %s %s %s %s\\n\",$1*1e-9,$2,$3,$4,$6,$7,$8,$5}' makes "
+           "the rows";
+  }
+  if (!separators.empty()) return separators;
+  if (line.words.size() == 12)
+    return "; rows of 3 x 4 numbers (KITTI) are read from poses.txt "
+           "in the layout with calib.txt";
+  return "";
+}
+
+TimedPose ParsePose(const std::string& path, const TextLine& line) {
+  constexpr const char* kForm = "`t tx ty tz qx qy qz qw`, or the same without t, in each row";
+  const std::string where = path + ":" + std::to_string(line.number);
+  const std::string explanation = ExplainPoseLine(line);
+  if (!explanation.empty()) throw InputError(where + ": must hold " + kForm + explanation);
+  const std::vector<double> numbers = ParseNumbers(path, line, 0);
+  const std::size_t first = numbers.size() == 8 ? 1 : 0;
+  if (numbers.size() != 7 + first) {
+    throw InputError(where + ": must hold " + kForm + "; holds " + std::to_string(numbers.size()) +
+                     " numbers");
+  }
+  const double* const n = numbers.data() + first;
+  TimedPose row;
+  row.pose.translation = {n[0], n[1], n[2]};
+  row.pose.rotation = Eigen::Quaterniond(n[6], n[3], n[4], n[5]);
+  if (std::abs(row.pose.rotation.norm() - 1) > 1e-2) {
+    throw InputError(where + ": the quaternion is not of length 1");
+  }
+  row.pose.rotation.normalize();
+  if (first == 1) {
+    const std::string unit = OtherTimeUnit(numbers[0], 0);
+    if (!unit.empty()) {
+      throw InputError(where + WrongTimeUnit(unit, "'" + line.words[0] + "'") +
+                       " (EuRoC has q_w first, too: wanted is qx qy qz qw)");
+    }
+    std::int64_t utime = 0;
+    if (!ParseMicroseconds(line.words[0], &utime)) {
+      throw InputError(where + ": '" + line.words[0] + "' is no time in s");
+    }
+    row.utime = utime;
+  }
+  return row;
+}
+
 std::vector<TimedPose> ReadPoses(const std::string& path) {
   std::vector<TimedPose> rows;
   for (const TextLine& line : ReadTextLines(path)) {
-    const std::vector<double> numbers = ParseNumbers(path, line, 0);
-    const std::size_t first = numbers.size() == 8 ? 1 : 0;
-    const std::string where = path + ":" + std::to_string(line.number);
-    if (numbers.size() != 7 + first ||
-        (!rows.empty() && rows[0].utime.has_value() != (first == 1))) {
-      throw InputError(where + ": must hold `t tx ty tz qx qy qz qw`, or the same without t, in " +
-                       "each row; holds " + std::to_string(numbers.size()) + " numbers");
+    rows.push_back(ParsePose(path, line));
+    if (rows.back().utime.has_value() != rows[0].utime.has_value()) {
+      throw InputError(path + ":" + std::to_string(line.number) +
+                       ": must hold a time like the first row, or none; holds " +
+                       std::to_string(line.words.size()) + " numbers");
     }
-    const double* const n = numbers.data() + first;
-    TimedPose row;
-    row.pose.translation = {n[0], n[1], n[2]};
-    row.pose.rotation = Eigen::Quaterniond(n[6], n[3], n[4], n[5]);
-    if (std::abs(row.pose.rotation.norm() - 1) > 1e-2) {
-      throw InputError(where + ": the quaternion is not of length 1");
-    }
-    row.pose.rotation.normalize();
-    if (first == 1) {
-      std::int64_t utime = 0;
-      if (!ParseMicroseconds(line.words[0], &utime)) {
-        throw InputError(where + ": '" + line.words[0] + "' is no time in s");
-      }
-      row.utime = utime;
-    }
-    rows.push_back(row);
   }
   return rows;
 }
 
-/// Index of the image that a row belongs to, if any: by time, or by its number where it has none.
-std::optional<std::size_t> FindImage(const std::vector<std::int64_t>& utimes, const TimedPose& row,
-                                     std::size_t row_index) {
-  if (!row.utime) {
-    return row_index < utimes.size() ? std::make_optional(row_index) : std::nullopt;
-  }
-  const auto it = std::lower_bound(utimes.begin(), utimes.end(), *row.utime - kMaxTimeDifferenceUs);
-  if (it == utimes.end() || *it > *row.utime + kMaxTimeDifferenceUs) return std::nullopt;
+/// Index of the image that was taken at a time, if any.
+std::optional<std::size_t> FindImage(const std::vector<std::int64_t>& utimes, std::int64_t utime) {
+  const auto it = std::lower_bound(utimes.begin(), utimes.end(), utime - kMaxTimeDifferenceUs);
+  if (it == utimes.end() || *it > utime + kMaxTimeDifferenceUs) return std::nullopt;
   return static_cast<std::size_t>(it - utimes.begin());
+}
+
+std::string RangeText(std::int64_t first_us, std::int64_t last_us) {
+  char text[80];
+  std::snprintf(text, sizeof(text), "%.3f .. %.3f s", 1e-6 * static_cast<double>(first_us),
+                1e-6 * static_cast<double>(last_us));
+  return text;
+}
+
+void FillPosesByTime(const std::string& path, const std::vector<TimedPose>& rows,
+                     FolderSequence::Contents* contents) {
+  const std::vector<std::int64_t>& utimes = contents->utimes;
+  contents->ground_truth.assign(utimes.size(), std::nullopt);
+  std::size_t num_found = 0;
+  for (const TimedPose& row : rows) {
+    const std::optional<std::size_t> image = FindImage(utimes, *row.utime);
+    if (!image) continue;
+    num_found += contents->ground_truth[*image] ? 0 : 1;
+    contents->ground_truth[*image] = row.pose;
+  }
+  if (num_found == utimes.size()) return;
+  std::string note = path + ": " + std::to_string(num_found) + " of " +
+                     std::to_string(utimes.size()) + " images have a pose";
+  if (num_found == 0) {
+    note += ": its times, " + RangeText(*rows.front().utime, *rows.back().utime) +
+            ", are not those of the images, " + RangeText(utimes.front(), utimes.back());
+  }
+  contents->notes.push_back(note);
 }
 
 void FillGroundTruth(FolderSequence::Contents* contents) {
   const std::string path = contents->folder + "/gt_pose.txt";
   if (!fs::exists(path)) return;
   const std::vector<TimedPose> rows = ReadPoses(path);
-  contents->ground_truth.resize(contents->utimes.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::optional<std::size_t> image = FindImage(contents->utimes, rows[i], i);
-    if (image) contents->ground_truth[*image] = rows[i].pose;
+  if (rows.empty()) {
+    contents->notes.push_back(path + ": holds no pose");
+    return;
   }
   std::vector<Se3> poses;
+  for (const TimedPose& row : rows) poses.push_back(row.pose);
+  if (rows[0].utime) {
+    FillPosesByTime(path, rows, contents);
+  } else {
+    FillPosesByRow(path, "poses", poses, contents);
+  }
+  poses.clear();
   for (const std::optional<Se3>& pose : contents->ground_truth) {
     if (pose) poses.push_back(*pose);
-  }
-  if (poses.size() != contents->utimes.size()) {
-    contents->notes.push_back(path + ": " + std::to_string(poses.size()) + " of " +
-                              std::to_string(contents->utimes.size()) + " images have a pose");
   }
   contents->axes = TrajectoryAxes::kNed;
   if (ContradictsNed(poses)) {
@@ -179,13 +206,14 @@ bool ContradictsNed(const std::vector<Se3>& T_world_body) {
   return travel_body_m.z() > 3 * std::max(travel_body_m.x(), travel_body_m.y());
 }
 
-std::unique_ptr<StereoSequence> OpenShibuyaSequence(const std::string& folder) {
+std::unique_ptr<StereoSequence> OpenShibuyaSequence(const std::string& folder,
+                                                    const SequenceOptions& options) {
   FolderSequence::Contents contents;
   contents.folder = folder;
   contents.left_folder = "image_0";
   contents.right_folder = "image_1";
   FillImagesAndTimes(&contents);
-  FillCamera(&contents);
+  FillCamera(options, &contents);
   FillGroundTruth(&contents);
   return std::make_unique<FolderSequence>(std::move(contents));
 }

@@ -2,24 +2,52 @@
 
 #include <filesystem>
 
+#include "common/dataset/folder_survey.h"
 #include "common/dataset/kitti_sequence.h"
 #include "common/dataset/kitti_tracking_sequence.h"
 #include "common/dataset/shibuya_sequence.h"
 #include "common/util/error.h"
 
 namespace airdos {
+namespace {
 
-std::unique_ptr<StereoSequence> OpenStereoSequence(const std::string& folder) {
-  namespace fs = std::filesystem;
-  if (!fs::is_directory(folder)) throw InputError(folder + ": is not a folder");
-  if (IsKittiTrackingSequence(folder)) return OpenKittiTrackingSequence(folder);
-  if (fs::exists(folder + "/calib.txt")) return OpenKittiSequence(folder);
-  if (fs::is_directory(folder + "/image_0") && fs::is_directory(folder + "/image_1")) {
-    return OpenShibuyaSequence(folder);
+namespace fs = std::filesystem;
+
+enum class Layout { kNone, kKittiTracking, kKittiOdometry, kShibuya };
+
+Layout FindLayout(const std::string& folder) {
+  if (IsKittiTrackingSequence(folder)) return Layout::kKittiTracking;
+  if (fs::exists(folder + "/calib.txt")) return Layout::kKittiOdometry;
+  const bool has_images =
+      fs::is_directory(folder + "/image_0") && fs::is_directory(folder + "/image_1");
+  return has_images ? Layout::kShibuya : Layout::kNone;
+}
+
+void CheckCalibrationName(const std::string& folder, Layout layout, const std::string& name) {
+  if (name.empty()) return;
+  if (name != kPublicCalibration) {
+    throw InputError("calibration '" + name + "': is not known; known is '" + kPublicCalibration +
+                     "' (640 x 360 px), any other belongs into calib.json of the data set");
   }
-  throw InputError(folder +
-                   ": no known layout: neither calib.txt (KITTI odometry) nor image_0 and image_1 "
-                   "(TartanAir-Shibuya) are there, nor is it image_02/NNNN of KITTI tracking");
+  if (layout != Layout::kShibuya) {
+    throw InputError(folder + ": has a calibration of its own; calibration '" + name +
+                     "' is for the TartanAir-Shibuya layout");
+  }
+}
+
+}  // namespace
+
+bool HasSequenceLayout(const std::string& folder) { return FindLayout(folder) != Layout::kNone; }
+
+std::unique_ptr<StereoSequence> OpenStereoSequence(const std::string& folder,
+                                                   const SequenceOptions& options) {
+  if (!fs::is_directory(folder)) throw InputError(folder + ": is not a folder");
+  const Layout layout = FindLayout(folder);
+  if (layout == Layout::kNone) throw InputError(folder + ": " + ExplainFolder(folder));
+  CheckCalibrationName(folder, layout, options.calibration);
+  if (layout == Layout::kKittiTracking) return OpenKittiTrackingSequence(folder);
+  if (layout == Layout::kKittiOdometry) return OpenKittiSequence(folder);
+  return OpenShibuyaSequence(folder, options);
 }
 
 }  // namespace airdos

@@ -1,7 +1,6 @@
 #ifndef AIRDOS_COMMON_DATASET_STEREO_SEQUENCE_H_
 #define AIRDOS_COMMON_DATASET_STEREO_SEQUENCE_H_
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -11,6 +10,7 @@
 
 #include "common/geometry/se3.h"
 #include "common/geometry/stereo_camera.h"
+#include "common/human/layouts.h"
 
 namespace airdos {
 
@@ -20,8 +20,8 @@ struct Keypoint {
   float v_px = 0;
   float confidence = 0;
 };
-/// One detected person in COCO-18 order, as AlphaPose files have it.
-using PersonKeypoints = std::array<Keypoint, 18>;
+/// One detected person: as many keypoints as the layout says, in its order.
+using PersonKeypoints = std::vector<Keypoint>;
 
 /// Axes of a ground-truth trajectory, of body and world alike.
 enum class TrajectoryAxes { kOptical, kNed, kUnknown };
@@ -34,6 +34,7 @@ struct SequenceFrame {
   std::vector<std::uint8_t> right_image_file;
   std::vector<std::uint8_t>
       person_mask_file;  ///< a whole 8-bit PNG file of the left image, 0 = background; empty: none
+  KeypointLayout keypoint_layout = KeypointLayout::kCoco18;  ///< the same in every frame
   std::vector<PersonKeypoints> keypoints_left;  ///< in no particular order; empty: nobody
   std::vector<PersonKeypoints> keypoints_right;
   std::optional<Se3> ground_truth;  ///< camera in its world, in ground_truth_axes()
@@ -68,10 +69,23 @@ class StereoSequence {
   virtual std::vector<std::string> notes() const { return {}; }
 };
 
+/// What a user says of a folder that is not in it.
+struct SequenceOptions {
+  /// kPublicCalibration: the camera of the public TartanAir-Shibuya set, whose folders have no
+  /// calib.json. Empty: the folder's own.
+  std::string calibration;
+};
+inline constexpr char kPublicCalibration[] = "tartanair-shibuya";
+
 /// Opens a folder and finds out its layout: KITTI tracking where the folder is image_02/NNNN
 /// (kitti_tracking_sequence.h), KITTI odometry where there is a calib.txt (kitti_sequence.h), else
-/// TartanAir-Shibuya where there are image_0 and image_1 (shibuya_sequence.h).
-std::unique_ptr<StereoSequence> OpenStereoSequence(const std::string& folder);
+/// TartanAir-Shibuya where there are image_0 and image_1 (shibuya_sequence.h). Throws InputError
+/// where it has none of these, naming the folders near it that do, or what else it looks like.
+std::unique_ptr<StereoSequence> OpenStereoSequence(const std::string& folder,
+                                                   const SequenceOptions& options = {});
+
+/// Whether OpenStereoSequence() knows the layout of a folder, whatever is wrong in it.
+bool HasSequenceLayout(const std::string& folder);
 
 }  // namespace airdos
 

@@ -17,6 +17,18 @@ std::optional<KeypointLayout> LayoutOf(int layout) {
   }
 }
 
+std::int8_t ToMessageLayout(KeypointLayout layout) {
+  switch (layout) {
+    case KeypointLayout::kCoco17:
+      return person_keypoints_t::LAYOUT_COCO17;
+    case KeypointLayout::kHalpe26:
+      return person_keypoints_t::LAYOUT_HALPE26;
+    case KeypointLayout::kCoco18:
+      break;
+  }
+  return person_keypoints_t::LAYOUT_COCO18;
+}
+
 std::vector<std::vector<BodyKeypoint>> ToDetections(const person_keypoints_t& message) {
   std::vector<std::vector<BodyKeypoint>> detections;
   for (std::size_t person = 0; person < message.u_px.size(); ++person) {

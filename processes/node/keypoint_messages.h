@@ -1,6 +1,7 @@
 #ifndef AIRDOS_PROCESSES_NODE_KEYPOINT_MESSAGES_H_
 #define AIRDOS_PROCESSES_NODE_KEYPOINT_MESSAGES_H_
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace airdos {
 
 /// What person_keypoints_t::layout says; nothing where it is unknown.
 std::optional<KeypointLayout> LayoutOf(int layout);
+/// The other way round.
+std::int8_t ToMessageLayout(KeypointLayout layout);
 
 /// The people of a message that has passed Validate(), with the keypoints as they were detected.
 std::vector<std::vector<BodyKeypoint>> ToDetections(const person_keypoints_t& message);

@@ -1,14 +1,18 @@
 #include "processes/stereo_player/dataset_source.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/util/error.h"
 
 namespace airdos {
 
 DatasetSource::DatasetSource(const std::string& folder, std::int64_t first, std::int64_t last,
-                             std::int64_t session, const ImagePackerOptions& options)
-    : sequence_(OpenStereoSequence(folder)), player_(sequence_.get(), session, options) {
+                             std::int64_t session, const ImagePackerOptions& options,
+                             const std::string& calibration)
+    : sequence_(OpenStereoSequence(folder, {calibration})),
+      player_(sequence_.get(), session, options),
+      assumed_(sequence_->notes()) {
   const auto newest = static_cast<std::int64_t>(sequence_->num_frames()) - 1;
   const std::int64_t from = std::max<std::int64_t>(0, first);
   const std::int64_t to = std::min(last, newest);
@@ -24,6 +28,12 @@ DatasetSource::DatasetSource(const std::string& folder, std::int64_t first, std:
 std::vector<Envelope> DatasetSource::NextFrame() {
   if (next_ == end_) return {};
   return player_.Load(next_++).messages;
+}
+
+std::vector<std::string> DatasetSource::TakeNotes() {
+  std::vector<std::string> notes = std::exchange(assumed_, {});
+  for (std::string& note : player_.TakeNotes()) notes.push_back(std::move(note));
+  return notes;
 }
 
 double DatasetSource::fraction_done() const {

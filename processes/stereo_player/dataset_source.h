@@ -17,17 +17,21 @@ namespace airdos {
 class DatasetSource : public FrameSource {
  public:
   /// Frames with first <= index <= last; the image number is the index. Throws InputError if the
-  /// folder cannot be used or has none of these; so does NextFrame() for a file.
+  /// folder cannot be used or has none of these; so does NextFrame() for a file. `calibration`:
+  /// SequenceOptions.
   DatasetSource(const std::string& folder, std::int64_t first, std::int64_t last,
-                std::int64_t session, const ImagePackerOptions& options);
+                std::int64_t session, const ImagePackerOptions& options,
+                const std::string& calibration = "");
 
   std::vector<Envelope> NextFrame() override;
   double fraction_done() const override;
-  std::vector<std::string> TakeNotes() override { return player_.TakeNotes(); }
+  /// What the data set assumed first, then what happened to its images.
+  std::vector<std::string> TakeNotes() override;
 
  private:
   std::unique_ptr<StereoSequence> sequence_;
   StereoPlayer player_;
+  std::vector<std::string> assumed_;  // until it was said
   std::size_t first_ = 0;
   std::size_t end_ = 0;
   std::size_t next_ = 0;

@@ -10,6 +10,7 @@
 #include "common/util/error.h"
 #include "processes/node/channels.h"
 #include "processes/node/conversions.h"
+#include "processes/node/keypoint_messages.h"
 
 namespace airdos {
 namespace {
@@ -26,21 +27,23 @@ Message MessageOf(const Header& header) {
 }
 
 /// Throws where a receiver would reject the message: the data set is to blame, not the network.
+/// `file` is what the message was made from, or empty.
 template <class Message>
-Envelope Pack(const std::string& channel, const Message& message) {
+Envelope Pack(const std::string& channel, const Message& message, const std::string& file) {
   const std::string reason = Validate(message);
   if (!reason.empty()) {
-    throw InputError("frame " + std::to_string(message.seq) + " for " + channel + ": " + reason);
+    const std::string frame = "frame " + std::to_string(message.seq) + " for " + channel;
+    throw InputError((file.empty() ? frame : file + ": " + frame) + ": " + reason);
   }
   return {channel, Encode(message)};
 }
 
-Envelope PackKeypoints(const std::string& channel, const Header& header,
-                       const std::vector<PersonKeypoints>& people) {
+Envelope PackKeypoints(const std::string& channel, const Header& header, KeypointLayout layout,
+                       const std::vector<PersonKeypoints>& people, const std::string& file) {
   auto message = MessageOf<person_keypoints_t>(header);
-  message.layout = person_keypoints_t::LAYOUT_COCO18;
+  message.layout = ToMessageLayout(layout);
   message.num_people = static_cast<std::int32_t>(people.size());
-  message.num_joints = static_cast<std::int32_t>(PersonKeypoints().size());
+  message.num_joints = NumKeypoints(layout);
   for (const PersonKeypoints& person : people) {
     std::vector<float> u_px, v_px, confidence;
     for (const Keypoint& keypoint : person) {
@@ -53,18 +56,18 @@ Envelope PackKeypoints(const std::string& channel, const Header& header,
     message.v_px.push_back(v_px);
     message.confidence.push_back(confidence);
   }
-  return Pack(channel, message);
+  return Pack(channel, message, file);
 }
 
-Envelope PackMask(const Header& header, const StereoCamera& camera,
-                  std::vector<std::uint8_t> file) {
+Envelope PackMask(const Header& header, const StereoCamera& camera, std::vector<std::uint8_t> file,
+                  const std::string& name) {
   auto message = MessageOf<person_mask_t>(header);
   message.encoding = file.empty() ? person_mask_t::ENCODING_NONE : person_mask_t::ENCODING_PNG;
   message.width = camera.width;
   message.height = camera.height;
   message.num_bytes = static_cast<std::int32_t>(file.size());
   message.data = std::move(file);
-  return Pack(channel::kPersonMask, message);
+  return Pack(channel::kPersonMask, message, name);
 }
 
 Envelope PackGroundTruth(const Header& header, const Se3& pose, TrajectoryAxes axes) {
@@ -73,7 +76,7 @@ Envelope PackGroundTruth(const Header& header, const Se3& pose, TrajectoryAxes a
                  : axes == TrajectoryAxes::kNed   ? pose_t::AXES_NED
                                                   : pose_t::AXES_UNKNOWN;
   FromSe3(pose, message.position, message.orientation);
-  return Pack(channel::kGroundTruth, message);
+  return Pack(channel::kGroundTruth, message, "");
 }
 
 }  // namespace
@@ -94,7 +97,7 @@ bool StereoPlayer::IsCalibrationDue(std::int64_t utime) {
 Envelope StereoPlayer::Calibration(const Header& header) const {
   auto message = MessageOf<stereo_calibration_t>(header);
   FromStereoCamera(sequence_->camera(), &message);
-  return Pack(channel::kCalibration, message);
+  return Pack(channel::kCalibration, message, "");
 }
 
 StereoPlayer::Frame StereoPlayer::Load(std::size_t index) {
@@ -104,18 +107,24 @@ StereoPlayer::Frame StereoPlayer::Load(std::size_t index) {
   std::vector<Envelope>& messages = frame.messages;
   if (IsCalibrationDue(data.utime)) messages.push_back(Calibration(frame.header));
 
-  const auto pack_image = [&](const char* channel, const std::vector<std::uint8_t>& file) {
+  const FrameFiles files = sequence_->files(index);
+  const auto pack_image = [&](const char* channel, const std::vector<std::uint8_t>& file,
+                              const std::string& name) {
     auto message = MessageOf<image_t>(frame.header);
-    packer_.Pack(file, "frame " + std::to_string(index) + " for " + channel, &message);
-    messages.push_back(Pack(channel, message));
+    packer_.Pack(file, name.empty() ? "frame " + std::to_string(index) + " for " + channel : name,
+                 &message);
+    messages.push_back(Pack(channel, message, name));
   };
-  pack_image(channel::kCameraLeft, data.left_image_file);
-  pack_image(channel::kCameraRight, data.right_image_file);
-  messages.push_back(
-      PackKeypoints(channel::kPersonKeypointsLeft, frame.header, data.keypoints_left));
-  messages.push_back(
-      PackKeypoints(channel::kPersonKeypointsRight, frame.header, data.keypoints_right));
-  messages.push_back(PackMask(frame.header, sequence_->camera(), std::move(data.person_mask_file)));
+  pack_image(channel::kCameraLeft, data.left_image_file, files.left_image);
+  pack_image(channel::kCameraRight, data.right_image_file, files.right_image);
+  messages.push_back(PackKeypoints(channel::kPersonKeypointsLeft, frame.header,
+                                   data.keypoint_layout, data.keypoints_left,
+                                   files.keypoints_left));
+  messages.push_back(PackKeypoints(channel::kPersonKeypointsRight, frame.header,
+                                   data.keypoint_layout, data.keypoints_right,
+                                   files.keypoints_right));
+  messages.push_back(PackMask(frame.header, sequence_->camera(), std::move(data.person_mask_file),
+                              files.person_mask));
   if (data.ground_truth) {
     messages.push_back(
         PackGroundTruth(frame.header, *data.ground_truth, sequence_->ground_truth_axes()));

@@ -2,9 +2,11 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/check/check_folder.h"
+#include "common/dataset/keypoint_file.h"
 #include "common/dataset/oxts.h"
 #include "common/dataset/sequence_files.h"
 #include "common/dataset/stereo_sequence.h"
+#include "common/dataset/times_file.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
 #include "processes/stereo_player/stereo_player.h"

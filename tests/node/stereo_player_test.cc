@@ -96,7 +96,7 @@ TEST(StereoPlayerTest, TheCalibrationComesOnceASecondOfCaptureTime) {
 
 TEST(StereoPlayerTest, PeopleMasksAndGroundTruthTravel) {
   FakeSequence sequence;
-  PersonKeypoints person = {};
+  PersonKeypoints person(18);
   person[4] = {10, 20, 1.04F};
   sequence.frame.keypoints_right = {person, person};
   sequence.frame.person_mask_file = ImageFile(".png", 64, false);
@@ -117,7 +117,7 @@ TEST(StereoPlayerTest, PeopleMasksAndGroundTruthTravel) {
 
 TEST(StereoPlayerTest, AFrameThatReceiversWouldRejectIsTheDataSetsFault) {
   FakeSequence sequence;
-  PersonKeypoints person = {};
+  PersonKeypoints person(18);
   person[4].u_px = std::numeric_limits<float>::quiet_NaN();
   sequence.frame.keypoints_left = {person};
   StereoPlayer player(&sequence, 5, {});

@@ -38,12 +38,13 @@ double Mean(const std::vector<double>& values) {
                               static_cast<double>(values.size());
 }
 
-std::vector<BodyKeypoints> ToPeople(const std::vector<PersonKeypoints>& detections) {
+std::vector<BodyKeypoints> ToPeople(KeypointLayout layout,
+                                    const std::vector<PersonKeypoints>& detections) {
   std::vector<BodyKeypoints> people;
   for (const PersonKeypoints& detection : detections) {
     std::vector<BodyKeypoint> keypoints;
     for (const Keypoint& k : detection) keypoints.push_back({k.u_px, k.v_px, k.confidence});
-    people.push_back(*MapToBody(KeypointLayout::kCoco18, keypoints));
+    people.push_back(*MapToBody(layout, keypoints));
   }
   return people;
 }
@@ -53,8 +54,8 @@ PeopleFrame ToPeopleFrame(const SequenceFrame& frame) {
   people.left_color = cv::imdecode(frame.left_image_file, cv::IMREAD_COLOR);
   cv::cvtColor(people.left_color, people.left_gray, cv::COLOR_BGR2GRAY);
   people.right_gray = cv::imdecode(frame.right_image_file, cv::IMREAD_GRAYSCALE);
-  people.left = ToPeople(frame.keypoints_left);
-  people.right = ToPeople(frame.keypoints_right);
+  people.left = ToPeople(frame.keypoint_layout, frame.keypoints_left);
+  people.right = ToPeople(frame.keypoint_layout, frame.keypoints_right);
   return people;
 }
 

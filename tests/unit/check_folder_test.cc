@@ -195,7 +195,7 @@ TEST_F(CheckFolderTest, UnitsOrderAndGapsOfTimes) {
     }
     sequence_.T_W_C.clear();  // whose times would not fit
     sequence_.Write(folder_);
-    ExpectOnly(Severity::kError, "times.unit", "times.txt");
+    ExpectOnly(Severity::kError, "folder", "times.txt");  // the reader refuses it
   }
   for (std::size_t i = 0; i < sequence_.times_s.size(); ++i) {
     sequence_.times_s[i] = std::to_string(3 * i);
@@ -211,6 +211,23 @@ TEST_F(CheckFolderTest, UnitsOrderAndGapsOfTimes) {
   sequence_.times_s[4] = sequence_.times_s[3];
   sequence_.Write(folder_);
   ExpectOnly(Severity::kError, "folder", "times.txt:5");
+}
+
+TEST(CheckTimesTest, UnitByTheInterval) {
+  for (const auto& [unit, period_us] :
+       {std::make_pair("ms", 100000000LL), {"us", 100000000000LL}, {"ns", 100000000000000LL}}) {
+    FindingList findings;
+    CheckTimes({0, period_us, 2 * period_us}, "LOG", &findings);
+    ASSERT_EQ(findings.findings().size(), 1u);
+    EXPECT_NE(findings.findings()[0].what.find(std::string("in ") + unit), std::string::npos);
+  }
+}
+
+TEST(CheckTimesTest, AllTheSameAreSaidOnce) {
+  FindingList findings;
+  CheckTimes({5, 5, 5, 5}, "LOG", &findings);
+  ASSERT_EQ(findings.count(Severity::kError), 1);
+  EXPECT_EQ(findings.findings()[0].what, "all 4 images have one time, 5 us");
 }
 
 TEST(CheckTimesTest, RepeatedAndDecreasing) {

@@ -1,0 +1,186 @@
+#include "common/dataset/times_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <regex>
+
+#include "common/dataset/sequence_files.h"
+#include "common/util/error.h"
+
+namespace airdos {
+namespace {
+
+/// A word for a message: not too long, without control characters.
+std::string Shown(std::string word) {
+  constexpr std::size_t kMaxShown = 60;
+  if (word.size() > kMaxShown) word = word.substr(0, kMaxShown) + "...";
+  std::replace_if(
+      word.begin(), word.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  return word;
+}
+
+std::string Joined(const TextLine& line) {
+  std::string text;
+  for (const std::string& word : line.words) text += (text.empty() ? "" : " ") + word;
+  return Shown(text);
+}
+
+bool IsNumber(const std::string& word, double* number) {
+  char* end = nullptr;
+  *number = std::strtod(word.c_str(), &end);
+  return !word.empty() && end == word.c_str() + word.size() && std::isfinite(*number);
+}
+
+bool IsDate(const std::string& word) {
+  static const std::regex date("[0-9]{4}[-/][0-9]{2}[-/][0-9]{2}.*");
+  return word.size() < 60 && std::regex_match(word, date);
+}
+
+bool IsImageName(const std::string& word) {
+  return word.find(".png") != std::string::npos || word.find(".jpg") != std::string::npos;
+}
+
+/// What a line looks like that is not one number.
+std::string ExplainTimeLine(const TextLine& line) {
+  double number = 0;
+  if (IsDate(line.words[0])) {
+    return "a date; seconds are wanted, such as those of the day: awk '{split($2,t,\":\"); printf "
+           "\"%.6f\\n\", t[1]*3600+t[2]*60+t[3]}'";
+  }
+  const auto first = static_cast<unsigned char>(line.words[0][0]);
+  if (std::isalpha(first) != 0 && !IsNumber(line.words[0], &number)) {
+    return "a heading or text; begin it with # or take it out, one time in s a line is wanted";
+  }
+  if (line.words[0].find(',') != std::string::npos) {
+    if (IsImageName(line.words.back())) {
+      return "a line of EuRoC's data.csv (time in ns, file name); one time in s a line is wanted: "
+             "awk -F, '!/^#/{printf \"%.6f\\n\", $1*1e-9}'";
+    }
+    return "columns with commas between, or a decimal comma; one time in s a line is wanted, with "
+           "a decimal point";
+  }
+  if (line.words.size() == 2 && IsImageName(line.words[1])) {
+    return "a time and a file name; the times alone are wanted: awk '{print $1}'";
+  }
+  if (line.words.size() == 2 && IsNumber(line.words[0], &number) &&
+      IsNumber(line.words[1], &number)) {
+    return "two columns; the time in s alone is wanted: awk '{print $2}' where it is the second";
+  }
+  if (line.words.size() == 8 || line.words.size() == 12) {
+    return "a row of poses (" + std::to_string(line.words.size()) + " columns)";
+  }
+  if (line.words.size() > 1) {
+    return std::to_string(line.words.size()) + " columns; the time in s alone is wanted";
+  }
+  return "no number";
+}
+
+struct TimeRow {
+  int line = 0;
+  std::string text;
+  double value = 0;
+};
+
+std::vector<TimeRow> ReadRows(const std::string& path) {
+  std::vector<TimeRow> rows;
+  for (const TextLine& line : ReadTextLines(path)) {
+    TimeRow row = {line.number, line.words[0], 0};
+    if (line.words.size() != 1 || !IsNumber(row.text, &row.value)) {
+      throw InputError(path + ":" + std::to_string(line.number) + ": must hold one time in s, '" +
+                       Joined(line) + "' is " + ExplainTimeLine(line));
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+void CheckUnit(const std::string& path, const std::vector<TimeRow>& rows) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < rows.size(); ++i) steps.push_back(rows[i].value - rows[i - 1].value);
+  double median = 0;
+  if (!steps.empty()) {
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    median = *middle;
+  }
+  const std::string unit = rows.empty() ? "" : OtherTimeUnit(rows[0].value, median);
+  if (unit.empty()) return;
+  char step[32];
+  std::snprintf(step, sizeof(step), "%.6g", median);
+  throw InputError(path + WrongTimeUnit(unit, "'" + Shown(rows[0].text) + "', steps of " + step));
+}
+
+void CheckOrder(const std::string& path, const std::vector<TimeRow>& rows,
+                const std::vector<std::int64_t>& utimes) {
+  std::size_t num_repeated = 0;
+  for (std::size_t i = 1; i < utimes.size(); ++i) num_repeated += utimes[i] == utimes[i - 1];
+  if (num_repeated > 0 && num_repeated + 1 == utimes.size()) {
+    throw InputError(path + ": all " + std::to_string(utimes.size()) + " times are '" +
+                     Shown(rows[0].text) + "': written with too few digits?");
+  }
+  for (std::size_t i = 1; i < utimes.size(); ++i) {
+    if (utimes[i] > utimes[i - 1]) continue;
+    const std::string where = path + ":" + std::to_string(rows[i].line) + ": time '" +
+                              Shown(rows[i].text) + "' does not come after the one before, '" +
+                              Shown(rows[i - 1].text) + "'";
+    throw InputError(where + (num_repeated > 1 ? "; " + std::to_string(num_repeated) + " of " +
+                                                     std::to_string(utimes.size()) +
+                                                     " repeat: written with too few digits?"
+                                               : ""));
+  }
+}
+
+}  // namespace
+
+std::string OtherTimeUnit(double first, double median_step) {
+  // 1e11 s after 1970 is the year 5138; in ms it is 1973.
+  if (first > 1e17) return "ns";
+  if (first > 1e14) return "us";
+  if (first > 1e11) return "ms";
+  std::string unit;
+  for (const char* name : {"ms", "us", "ns"}) {
+    median_step *= 1e-3;
+    if (median_step >= 0.005 && median_step <= 1) unit = name;
+  }
+  return unit;
+}
+
+std::string WrongTimeUnit(const std::string& unit, const std::string& shown) {
+  const std::string factor = unit == "ms" ? "1e-3" : unit == "us" ? "1e-6" : "1e-9";
+  return ": the times are in " + unit + " (" + shown +
+         "), wanted in s; awk '{$1=sprintf(\"%.6f\"," + " $1*" + factor +
+         "); print}' converts them";
+}
+
+std::string ExplainSeparators(const TextLine& line) {
+  for (const std::string& word : line.words) {
+    if (word.find(',') != std::string::npos) {
+      return "; numbers are wanted with blanks between them, not commas";
+    }
+    if (word.find(';') != std::string::npos) {
+      return "; numbers are wanted with blanks between them, not semicolons";
+    }
+  }
+  return "";
+}
+
+std::vector<std::int64_t> ReadTimes(const std::string& path) {
+  const std::vector<TimeRow> rows = ReadRows(path);
+  CheckUnit(path, rows);
+  std::vector<std::int64_t> utimes;
+  for (const TimeRow& row : rows) {
+    std::int64_t utime = 0;
+    if (!ParseMicroseconds(row.text, &utime)) {
+      throw InputError(path + ":" + std::to_string(row.line) + ": '" + Shown(row.text) +
+                       "' is no time in s");
+    }
+    utimes.push_back(utime);
+  }
+  CheckOrder(path, rows, utimes);
+  return utimes;
+}
+
+}  // namespace airdos
