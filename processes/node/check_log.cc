@@ -5,9 +5,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "common/check/check_camera.h"
 #include "common/check/check_jpeg.h"
 #include "common/check/check_people.h"
-#include "common/check/check_stereo.h"
 #include "common/util/image_header.h"
 #include "processes/node/channels.h"
 #include "processes/node/check_log_survey.h"
