@@ -39,8 +39,10 @@ void CheckCalibrationName(const std::string& folder, Layout layout, const std::s
 
 bool HasSequenceLayout(const std::string& folder) { return FindLayout(folder) != Layout::kNone; }
 
-std::unique_ptr<StereoSequence> OpenStereoSequence(const std::string& folder,
+std::unique_ptr<StereoSequence> OpenStereoSequence(const std::string& given,
                                                    const SequenceOptions& options) {
+  std::string folder = given;  // without slashes at its end, which messages would show
+  while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
   if (!fs::is_directory(folder)) throw InputError(folder + ": is not a folder");
   const Layout layout = FindLayout(folder);
   if (layout == Layout::kNone) throw InputError(folder + ": " + ExplainFolder(folder));

@@ -216,7 +216,7 @@ TEST_F(DoctorProcessTest, CheckExitsWithOneOnErrors) {
   }
   const std::string json = (folder_ / "check.json").string();
   EXPECT_EQ(Run("airdos-check", {folder_.string(), "--json", json}), 1) << errors_;
-  ExpectLine("image_0/000000.png: error: has no partner in ");
+  ExpectLine("only on the left: '000000.png'; only on the right: '000001.png'");
   ExpectLine(": 1 errors, 0 warnings\n");
   std::ifstream file(json);
   const std::string text(std::istreambuf_iterator<char>(file), {});
