@@ -23,10 +23,16 @@ std::string SmallLetters(std::string text) {
   return text;
 }
 
+/// Between n separators lie n + 1 fields, some perhaps empty.
 std::vector<std::string> SplitAt(char separator, const std::string& text) {
   std::vector<std::string> fields;
-  std::istringstream stream(text);
-  for (std::string field; std::getline(stream, field, separator);) fields.push_back(Trimmed(field));
+  std::size_t begin = 0;
+  for (std::size_t end = text.find(separator); end != std::string::npos;
+       end = text.find(separator, begin)) {
+    fields.push_back(Trimmed(text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  fields.push_back(Trimmed(text.substr(begin)));
   return fields;
 }
 

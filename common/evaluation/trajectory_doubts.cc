@@ -27,23 +27,34 @@ TrajectoryPose InOtherOrder(const TrajectoryPose& pose, QuaternionOrder read) {
   return other;
 }
 
+int CountChanges(const PoseReading& reading) {
+  return reading.has_other_order_in_estimate + reading.has_other_order_in_truth +
+         reading.is_estimate_inverted + reading.is_truth_inverted;
+}
+
+/// In the order in which those that fit alike are preferred.
 std::vector<PoseReading> OtherReadings(bool has_estimate_order, bool has_truth_order) {
+  constexpr bool kInversions[][2] = {{false, false}, {true, false}, {false, true}};
   std::vector<PoseReading> readings;
-  // The simple ones first: of two that fit alike the first is taken.
-  for (const bool estimate_inverted : {false, true}) {
-    for (const bool truth_inverted : {false, true}) {
-      for (const bool estimate_order : {false, true}) {
-        for (const bool truth_order : {false, true}) {
-          if (estimate_inverted && truth_inverted) continue;  // nobody does
-          if ((estimate_order && !has_estimate_order) || (truth_order && !has_truth_order)) {
-            continue;
-          }
-          readings.push_back({estimate_order, truth_order, estimate_inverted, truth_inverted});
-        }
+  for (const bool(&inverted)[2] : kInversions) {
+    for (const bool estimate_order : {false, true}) {
+      for (const bool truth_order : {false, true}) {
+        if ((estimate_order && !has_estimate_order) || (truth_order && !has_truth_order)) continue;
+        const PoseReading reading = {estimate_order, truth_order, inverted[0], inverted[1]};
+        if (CountChanges(reading) > 0) readings.push_back(reading);
       }
     }
   }
   return readings;
+}
+
+/// The agreement of a reading; 0 where its axes make chance likely.
+double AgreementOf(const PoseReading& reading, const MatchedTrajectories& reread) {
+  constexpr double kMirrored = 0.97;
+  const AxesDecision decision = DetectAxes(reread);
+  if (CountChanges(reading) > 1 && !decision.axes.is_optical_or_ned()) return 0;
+  if (!decision.axes.is_right_handed() && decision.agreement < kMirrored) return 0;
+  return decision.best_agreement;
 }
 
 std::size_t CountRepeatedPartners(const std::vector<TrajectoryPose>& poses) {
@@ -100,20 +111,27 @@ std::optional<ReadingDoubt> FindBetterReading(const MatchedTrajectories& matched
                                               QuaternionOrder truth_order) {
   constexpr double kMinAgreement = 0.9;
   constexpr double kClearlyBetter = 0.35;
-  constexpr double kAlike = 0.002;
-  ReadingDoubt doubt;
-  doubt.agreement_as_read = DetectAxes(matched).best_agreement;
-  for (const PoseReading& reading : OtherReadings(estimate_order != QuaternionOrder::kNone,
-                                                  truth_order != QuaternionOrder::kNone)) {
-    const double agreement =
-        DetectAxes(ReadAs(reading, estimate_order, truth_order, matched)).best_agreement;
-    if (agreement <= doubt.agreement + kAlike) continue;
-    doubt.reading = reading;
-    doubt.agreement = agreement;
+  const double as_read = DetectAxes(matched).best_agreement;
+  const std::vector<PoseReading> readings = OtherReadings(estimate_order != QuaternionOrder::kNone,
+                                                          truth_order != QuaternionOrder::kNone);
+  std::vector<double> agreements;
+  for (const PoseReading& reading : readings) {
+    agreements.push_back(
+        AgreementOf(reading, ReadAs(reading, estimate_order, truth_order, matched)));
   }
-  const bool is_better = doubt.agreement >= kMinAgreement &&
-                         1 - doubt.agreement < kClearlyBetter * (1 - doubt.agreement_as_read);
-  if (!is_better) return std::nullopt;
+  const double best = *std::max_element(agreements.begin(), agreements.end());
+  std::optional<ReadingDoubt> doubt;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const bool is_better =
+        agreements[i] >= kMinAgreement && 1 - agreements[i] < kClearlyBetter * (1 - as_read);
+    const bool fits_as_best = 1 - agreements[i] <= 2 * (1 - best) + 0.005;
+    if (!is_better || !fits_as_best) continue;
+    if (!doubt) {
+      doubt = ReadingDoubt{readings[i], agreements[i], as_read, false};
+    } else if (doubt->reading.is_estimate_inverted && readings[i].is_truth_inverted) {
+      doubt->do_both_inversions_fit = true;
+    }
+  }
   return doubt;
 }
 

@@ -26,11 +26,15 @@ struct ReadingDoubt {
   PoseReading reading;
   double agreement = 0;  ///< of the motions, see DetectAxes(), in this reading
   double agreement_as_read = 0;
+  bool do_both_inversions_fit = false;  ///< that of the other file as well
 };
 
 /// Finds the reading in which the motions of both agree clearly better than as they were read: by
-/// at least 0.9, and lacking less than 0.35 of what they lack as read. Orders are tried where there
-/// are quaternions. Nothing where no reading does.
+/// at least 0.9, and lacking less than 0.35 of what they lack as read. Where that needs two changes
+/// or mirrored axes, chance fits more easily: two changes count in optical or NED axes only,
+/// left-handed ones from 0.97 on. Of those that fit about as well, orders come before inversions
+/// and the estimate's inversion before that of the truth (where both worlds are the same, either
+/// fits). Orders are tried where there are quaternions. Nothing where no reading does.
 std::optional<ReadingDoubt> FindBetterReading(const MatchedTrajectories& matched,
                                               QuaternionOrder estimate_order,
                                               QuaternionOrder truth_order);

@@ -152,11 +152,11 @@ std::vector<Row> ReadRows(const std::string& path, TrajectoryColumns* columns) {
 }
 
 /// Median step between neighbouring rows that both lie off the origin.
-double MedianStep(const std::vector<Row>& rows) {
+double MedianStep(const std::vector<Row*>& rows) {
   std::vector<double> steps_m;
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    const Eigen::Vector3d& a = rows[i - 1].pose.position_m;
-    const Eigen::Vector3d& b = rows[i].pose.position_m;
+    const Eigen::Vector3d& a = rows[i - 1]->pose.position_m;
+    const Eigen::Vector3d& b = rows[i]->pose.position_m;
     if (!a.isZero(0) && !b.isZero(0)) steps_m.push_back((b - a).norm());
   }
   if (steps_m.empty()) return 0;
@@ -170,20 +170,24 @@ double MedianStep(const std::vector<Row>& rows) {
 std::size_t MarkLostAtOrigin(std::vector<Row>* rows, int* first_line) {
   constexpr double kJump = 3;  // median steps
   constexpr double kJumpAtStart = 10;
-  const double step_m = MedianStep(*rows);
+  std::vector<Row*> posed;
+  for (Row& row : *rows) {
+    if (row.has_position) posed.push_back(&row);
+  }
+  const double step_m = MedianStep(posed);
   if (step_m <= 0) return 0;
-  const auto is_at_origin = [&](std::size_t i) { return (*rows)[i].pose.position_m.isZero(0); };
+  const auto distance_m = [&](std::size_t i) { return posed[i]->pose.position_m.norm(); };
   std::size_t num_lost = 0;
-  for (std::size_t begin = 0, end = 0; begin < rows->size(); begin = end + 1) {
+  for (std::size_t begin = 0, end = 0; begin < posed.size(); begin = end + 1) {
     end = begin;
-    if (!is_at_origin(begin)) continue;
-    while (end < rows->size() && is_at_origin(end)) ++end;
-    double jump_m = begin > 0 ? (*rows)[begin - 1].pose.position_m.norm() : 0;
-    if (end < rows->size()) jump_m = std::max(jump_m, (*rows)[end].pose.position_m.norm());
+    while (end < posed.size() && distance_m(end) == 0) ++end;
+    if (end == begin) continue;
+    double jump_m = begin > 0 ? distance_m(begin - 1) : 0;
+    if (end < posed.size()) jump_m = std::max(jump_m, distance_m(end));
     if (jump_m <= (begin == 0 ? kJumpAtStart : kJump) * step_m) continue;
     for (std::size_t i = std::max<std::size_t>(begin, 1); i < end; ++i) {
-      if (num_lost == 0) *first_line = (*rows)[i].line;
-      (*rows)[i].has_position = false;
+      if (num_lost == 0) *first_line = posed[i]->line;
+      posed[i]->has_position = false;
       ++num_lost;
     }
   }

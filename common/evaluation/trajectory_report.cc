@@ -71,7 +71,8 @@ std::string Describe(const PoseReading& reading, const TrajectoryReport& report)
 
 /// Reads quaternions in the other order where the motions say so; refuses inverted poses.
 void DecideReading(const Trajectory& estimate, const Trajectory& ground_truth,
-                   MatchedTrajectories* matched, TrajectoryReport* report) {
+                   const EvaluationOptions& options, MatchedTrajectories* matched,
+                   TrajectoryReport* report) {
   report->estimate_order = estimate.order;
   report->truth_order = ground_truth.order;
   const std::optional<ReadingDoubt> doubt =
@@ -82,12 +83,16 @@ void DecideReading(const Trajectory& estimate, const Trajectory& ground_truth,
                                " with " + Describe(reading, *report) + ", by " +
                                Decimals("%.3f", doubt->agreement_as_read) + " as they stand";
   if (reading.is_estimate_inverted || reading.is_truth_inverted) {
-    throw InputError((reading.is_estimate_inverted ? NameOf("estimate", estimate)
-                                                   : NameOf("ground truth", ground_truth)) +
-                     ": looks like inverted poses (T_C_W, as ORB-SLAM's Tcw, where T_W_C is "
-                     "wanted): " +
-                     evidence + "; give --inverted " +
-                     (reading.is_estimate_inverted ? "estimate" : "ground-truth"));
+    const bool is_stated = options.is_estimate_inverted || options.is_truth_inverted;
+    throw InputError(
+        (reading.is_estimate_inverted ? NameOf("estimate", estimate)
+                                      : NameOf("ground truth", ground_truth)) +
+        ": looks like inverted poses (T_C_W, as ORB-SLAM's Tcw, where T_W_C is wanted): " +
+        evidence +
+        (doubt->do_both_inversions_fit ? ", and as well with the ground truth inverted" : "") +
+        (is_stated ? "; leave --inverted out, or name the other file"
+                   : std::string("; give --inverted ") +
+                         (reading.is_estimate_inverted ? "estimate" : "ground-truth")));
   }
   *matched = ReadAs(reading, estimate.order, ground_truth.order, std::move(*matched));
   report->remarks.push_back(
@@ -117,17 +122,20 @@ void CheckGivenAxes(const MatchedTrajectories& matched, const AxesDecision& deci
 }
 
 /// Where positions fit, but not the motions in body axes, one file's rotations are wrong.
-void CheckContradiction(const MatchedTrajectories& matched, const AxesDecision& decision,
+bool CheckContradiction(const MatchedTrajectories& matched, const AxesDecision& decision,
                         TrajectoryReport* report) {
   constexpr double kAgree = 0.9;
   const bool can_tell = decision.uses_rotation || decision.uses_translation;
-  if (!can_tell || decision.best_agreement >= kAgree || !DoPositionsFit(matched)) return;
+  if (!can_tell || decision.best_agreement >= kAgree || !DoPositionsFit(matched)) {
+    return false;
+  }
   report->remarks.push_back(
       {true, "contradiction: the positions fit, but motions in body axes agree by " +
                  Decimals("%.3f", decision.best_agreement) +
                  " only (1 = same): the rotations of one file are wrong or those of another body "
                  "(order of the quaternion, an IMU's instead of the camera's?); do not believe "
                  "figures of rotations and relative poses"});
+  return true;
 }
 
 void DecideAxes(const MatchedTrajectories& matched, const EvaluationOptions& options,
@@ -135,21 +143,26 @@ void DecideAxes(const MatchedTrajectories& matched, const EvaluationOptions& opt
   const AxesDecision decision = DetectAxes(matched);
   report->axes = options.axes.value_or(decision.axes);
   report->axes_reason = (options.axes ? "as given; " : "detected: ") + decision.Explain();
-  CheckContradiction(matched, decision, report);
+  const bool is_contradiction = CheckContradiction(matched, decision, report);
   if (options.axes) {
     CheckGivenAxes(matched, decision, report);
     return;
   }
-  const bool can_tell = decision.uses_rotation || decision.uses_translation;
+  // Axes that are mirrored, or no axes, would spoil the positions that fit.
   constexpr double kNothingFits = 0.7;
-  if (can_tell && decision.best_agreement < kNothingFits && DoPositionsFit(matched)) {
+  if (is_contradiction &&
+      (decision.best_agreement < kNothingFits || !decision.axes.is_right_handed())) {
     report->no_rotations_because = "rotations of both contradict each other";
     KeepAxes(options, decision.Explain(), report);
     return;
   }
   if (!decision.is_known) {
+    std::string warnings;  // one of them may be the reason
+    for (const Remark& remark : report->remarks) {
+      if (remark.is_warning) warnings += "; " + remark.text;
+    }
     throw InputError("ground truth: its axes cannot be told, " + decision.Explain() +
-                     ": give --gt-axes optical, ned or such as y,-z,x");
+                     ": give --gt-axes optical, ned or such as y,-z,x" + warnings);
   }
   for (const GroundTruthAxes& axes : decision.alternatives) {
     MatchedTrajectories other = matched;
@@ -171,6 +184,9 @@ void CountFrames(const Trajectory& estimate, const Trajectory& ground_truth,
     throw InputError("--frames " + std::to_string(options.num_frames) + ": fewer than the " +
                      std::to_string(report->num_matched) +
                      " poses compared; give the number of images of the whole sequence");
+  }
+  if (report->has_truth_higher_rate) {
+    report->num_without_truth = report->num_estimate - report->num_matched;
   }
   report->completeness =
       static_cast<double>(report->num_matched) / static_cast<double>(report->num_frames);
@@ -265,7 +281,7 @@ TrajectoryReport EvaluateTrajectory(const Trajectory& estimate, const Trajectory
   matched = ReadAs(stated, estimate.order, ground_truth.order, std::move(matched));
   FindRotations(estimate, ground_truth, matched, &report);
   if (report.no_rotations_because.empty()) {
-    DecideReading(estimate, ground_truth, &matched, &report);
+    DecideReading(estimate, ground_truth, options, &matched, &report);
     DecideAxes(matched, options, &report);
   } else {
     KeepAxes(options, report.no_rotations_because, &report);

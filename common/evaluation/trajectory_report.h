@@ -39,6 +39,7 @@ struct TrajectoryReport {
   std::size_t num_frames = 0;  ///< EvaluationOptions::num_frames, or what stands for it
   bool are_frames_given = false;
   bool has_truth_higher_rate = false;  ///< then the estimate's rows are the frames
+  std::size_t num_without_truth = 0;   ///< poses that such a truth has no partner for: not lost
   std::size_t num_lost = 0;            ///< see CountLostFrames()
   double path_m = 0;                   ///< of the ground truth's matched poses
   double duration_s = 0;               ///< of the matched poses; 0 for KITTI rows

@@ -38,6 +38,10 @@ std::string CountsToText(const TrajectoryReport& r) {
         "(--frames gives all images)\n",
         r.num_frames);
   }
+  if (r.num_without_truth > 0) {
+    text += Format("%zu estimated poses have no true one at their time; they are not lost\n",
+                   r.num_without_truth);
+  }
   text += Format("%zu of %zu frames lost (no pose, or a step wrong by over %.2f m", r.num_lost,
                  r.num_frames, kLostTranslationM);
   return text + (r.no_rotations_because.empty() ? Format(" or %.0f deg)\n", kLostRotationDeg)

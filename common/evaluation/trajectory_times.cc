@@ -23,6 +23,7 @@ constexpr double kYear1985S = 4.7e8;
 constexpr double kSparseIntervalS = 10;
 constexpr double kSparseIntervalSinceEpochS = 400;
 constexpr double kMostRepeated = 0.1;
+constexpr double kFewRepeated = 0.005;
 
 std::string Format(const char* format, ...) __attribute__((format(printf, 1, 2)));
 std::string Format(const char* format, ...) {
@@ -101,7 +102,9 @@ void CheckRepetition(const std::string& path, const std::vector<FileTime>& times
     throw InputError(what +
                      "; they were written with too few digits, write s with six decimals (%.6f)");
   }
-  remarks->push_back({true, what + "; of rows with the same time only one is compared"});
+  remarks->push_back(
+      {share > kFewRepeated,
+       what + "; rows of the same time may be compared with a pose of another time"});
 }
 
 /// Whether the times are 0, 1, 2, ... or go on so from another small whole number.

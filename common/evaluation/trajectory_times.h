@@ -21,8 +21,8 @@ double UnitOfTimes(const std::vector<FileTime>& times);
 
 /// Checks the times of a file's rows and converts them to seconds. Throws InputError where they
 /// decrease, or where more than a tenth repeats the time of the row above (written with too few
-/// digits). Remarks on another unit than s, on single repetitions, on times that count rows and on
-/// intervals that nobody records with.
+/// digits). Remarks on another unit than s, on single repetitions (a warning above 0.5 %), on times
+/// that count rows and on intervals that nobody records with.
 std::vector<double> TimesInSeconds(const std::string& path, const std::vector<FileTime>& times,
                                    Remarks* remarks);
 
