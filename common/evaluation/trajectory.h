@@ -34,8 +34,8 @@ struct Trajectory {
   bool has_rotations = true;      ///< false: positions only, the rotations are identity
   std::size_t num_lost_rows = 0;  ///< rows that are no pose: not a number, or zeros where lost
   QuaternionOrder order = QuaternionOrder::kNone;  ///< kNone: matrices, or nothing
-  std::string path;                                ///< empty: not from a file
-  Remarks remarks;
+  std::string path{};                              ///< empty: not from a file
+  Remarks remarks{};
 
   std::size_t num_rows() const { return poses.size() + num_lost_rows; }
 };

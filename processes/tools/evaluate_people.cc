@@ -25,8 +25,9 @@ TrajectoryReport CompareCameras(const PeopleArguments& arguments) {
   EvaluationOptions options;
   options.max_time_difference_s = 0.001;
   options.axes = GroundTruthAxes::Optical();
-  const TrajectoryReport report = EvaluateTrajectory(
-      ReadTrajectory(arguments.estimate), ReadTrajectory(arguments.ground_truth), options);
+  const Trajectory estimate = ReadTrajectory(arguments.estimate);
+  const TrajectoryReport report =
+      EvaluateTrajectory(estimate, ReadTrajectory(arguments.ground_truth), options);
   if (!report.no_rotations_because.empty()) {
     throw InputError(arguments.estimate + " against " + arguments.ground_truth + ": " +
                      report.no_rotations_because +
