@@ -63,6 +63,23 @@ double AgreementOf(const Motions& estimate, const Motions& truth, const GroundTr
   return uses.uses_rotation && uses.uses_translation ? 0.5 * sum : sum;
 }
 
+/// The motions of both, and whether the ground truth moves enough to tell something by them.
+struct ComparedMotions {
+  Motions estimate;
+  Motions truth;
+  AxesDecision uses;
+};
+
+ComparedMotions Compare(const MatchedTrajectories& matched) {
+  const std::size_t stride =
+      std::clamp<std::size_t>(matched.estimate.size() / 4, 1, kLongestStride);
+  ComparedMotions compared = {
+      MotionsOf(matched.estimate, stride), MotionsOf(matched.ground_truth, stride), {}};
+  compared.uses.uses_rotation = kDegPerRad * Rms(compared.truth.rotation) >= kMinRotationRmsDeg;
+  compared.uses.uses_translation = Rms(compared.truth.translation) >= kMinTranslationRmsM;
+  return compared;
+}
+
 /// The axis that "y", "+y" or "-y" names.
 std::optional<Eigen::Vector3d> ParseAxis(std::string text) {
   const double sign = !text.empty() && text[0] == '-' ? -1 : 1;
@@ -138,18 +155,12 @@ TrajectoryPose ToOptical(const TrajectoryPose& pose, const GroundTruthAxes& axes
 }
 
 AxesDecision DetectAxes(const MatchedTrajectories& matched) {
-  const std::size_t stride =
-      std::clamp<std::size_t>(matched.estimate.size() / 4, 1, kLongestStride);
-  const Motions estimate = MotionsOf(matched.estimate, stride);
-  const Motions truth = MotionsOf(matched.ground_truth, stride);
-  AxesDecision decision;
-  decision.uses_rotation = kDegPerRad * Rms(truth.rotation) >= kMinRotationRmsDeg;
-  decision.uses_translation = Rms(truth.translation) >= kMinTranslationRmsM;
-
+  const ComparedMotions compared = Compare(matched);
+  AxesDecision decision = compared.uses;
   const std::vector<GroundTruthAxes> all = GroundTruthAxes::All();
   std::vector<double> agreement;
   for (const GroundTruthAxes& axes : all) {
-    agreement.push_back(AgreementOf(estimate, truth, axes, decision));
+    agreement.push_back(AgreementOf(compared.estimate, compared.truth, axes, decision));
   }
   const double best = *std::max_element(agreement.begin(), agreement.end());
   decision.best_agreement = best;
@@ -170,6 +181,11 @@ AxesDecision DetectAxes(const MatchedTrajectories& matched) {
                                              decision.alternatives.end(), GroundTruthAxes::Ned());
   decision.is_known = best >= kMinAgreement && !is_optical_and_ned;
   return decision;
+}
+
+double AgreementIn(const GroundTruthAxes& axes, const MatchedTrajectories& matched) {
+  const ComparedMotions compared = Compare(matched);
+  return AgreementOf(compared.estimate, compared.truth, axes, compared.uses);
 }
 
 std::string AxesDecision::Explain() const {

@@ -66,6 +66,9 @@ struct AxesDecision {
 /// right-handed ones.
 AxesDecision DetectAxes(const MatchedTrajectories& matched);
 
+/// The agreement of these axes, as DetectAxes() computes it.
+double AgreementIn(const GroundTruthAxes& axes, const MatchedTrajectories& matched);
+
 }  // namespace airdos
 
 #endif  // AIRDOS_COMMON_EVALUATION_GROUND_TRUTH_AXES_H_

@@ -18,20 +18,36 @@ struct TrajectoryPose {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
 };
 
+/// What was found out, assumed or is doubtful about files that were read: one line for the user.
+struct Remark {
+  bool is_warning = false;  ///< false: a note on how a file was understood
+  std::string text;
+};
+using Remarks = std::vector<Remark>;
+
+/// Order in which the file's quaternions stand.
+enum class QuaternionOrder { kNone, kXyzw, kWxyz };
+
 struct Trajectory {
-  bool has_times = false;  ///< false: KITTI rows, time_s is the row's number
+  bool has_times = false;  ///< false: rows without times, time_s is the row's number from 0
   std::vector<TrajectoryPose> poses;
+  bool has_rotations = true;      ///< false: positions only, the rotations are identity
+  std::size_t num_lost_rows = 0;  ///< rows that are no pose: not a number, or zeros where lost
+  QuaternionOrder order = QuaternionOrder::kNone;  ///< kNone: matrices, or nothing
+  std::string path{};                              ///< empty: not from a file
+  Remarks remarks{};
+
+  std::size_t num_rows() const { return poses.size() + num_lost_rows; }
 };
 
-/// Reads TUM rows (`t x y z qx qy qz qw`, t in s, increasing) or KITTI rows (3 x 4, row major),
-/// told apart by the count of numbers in the first row. Throws InputError naming file and line.
-Trajectory ReadTrajectory(const std::string& path);
-
-/// Gives the poses of KITTI rows the times (s) of a file with one time a line.
-void SetTimes(const std::string& times_path, Trajectory* trajectory);
+/// "estimate FILE", for messages.
+std::string NameOf(const char* role, const Trajectory& trajectory);
 
 /// The rigid motion from `a` to `b`, in the axes of body a.
 TrajectoryPose RelativePose(const TrajectoryPose& a, const TrajectoryPose& b);
+
+/// T_A_B of T_B_A, at the same time.
+TrajectoryPose Inverse(const TrajectoryPose& pose);
 
 /// Poses of estimate and ground truth that belong together, in order of time.
 struct MatchedTrajectories {
@@ -41,8 +57,8 @@ struct MatchedTrajectories {
 
 /// Matches by time where both have times: each pose of the trajectory with fewer poses gets the
 /// nearest of the other if it is at most `max_time_difference_s` away (the definition of evo). Rows
-/// by number where neither has times; the estimate may then end earlier, not later. One with and
-/// one without times is an InputError.
+/// by number where neither has times: row k belongs to row k only where both have as many rows,
+/// else this is an InputError. So is one with and one without times.
 MatchedTrajectories Associate(const Trajectory& estimate, const Trajectory& ground_truth,
                               double max_time_difference_s);
 

@@ -77,7 +77,8 @@ cv::Mat DrawEvaluation(const TrajectoryReport& report, const std::string& title)
               cv::LINE_AA);
 
   constexpr char kAxisNames[] = {'x', 'y', 'z'};
-  const PlaneFromAbove plane = FindPlane(report.aligned.ground_truth);
+  const PlaneFromAbove plane =
+      FindPlane(report.truth_has_rotations ? report.aligned.ground_truth : report.aligned.estimate);
   Chart above;
   above.title = "from above, SE(3) aligned" + Number(", %.1f m", report.path_m) +
                 Number(", %.1f %% complete", 100 * report.completeness);
@@ -94,14 +95,18 @@ cv::Mat DrawEvaluation(const TrajectoryReport& report, const std::string& title)
                           PositionErrors(report.aligned.estimate, report.aligned.ground_truth)),
             {kLeftWidth, kTitleHeight, kWidth - kLeftWidth, kPanelHeight}, &picture);
   std::vector<double> rotation_deg;
-  for (const RelativeError& error : ErrorsPerFrame(report.aligned)) {
-    rotation_deg.push_back(error.rotation_deg);
+  const bool has_rotations = report.no_rotations_because.empty();
+  if (has_rotations) {
+    for (const RelativeError& error : ErrorsPerFrame(report.aligned)) {
+      rotation_deg.push_back(error.rotation_deg);
+    }
   }
-  DrawChart(ChartOverTime(report,
-                          "rotation error per frame" +
-                              Number(", rmse %.4f deg", report.rpe_rotation_per_frame_deg.rmse),
-                          "error (deg)", rotation_deg),
-            {kLeftWidth, kTitleHeight + kPanelHeight, kWidth - kLeftWidth, kPanelHeight}, &picture);
+  const std::string summary =
+      has_rotations ? Number(", rmse %.4f deg", report.rpe_rotation_per_frame_deg.rmse)
+                    : ": n/a, " + report.no_rotations_because;
+  DrawChart(
+      ChartOverTime(report, "rotation error per frame" + summary, "error (deg)", rotation_deg),
+      {kLeftWidth, kTitleHeight + kPanelHeight, kWidth - kLeftWidth, kPanelHeight}, &picture);
   return picture;
 }
 

@@ -1,10 +1,13 @@
 #include "common/evaluation/trajectory_report.h"
 
-#include <cstdarg>
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "common/evaluation/alignment.h"
+#include "common/evaluation/trajectory_doubts.h"
+#include "common/evaluation/trajectory_times.h"
 #include "common/util/error.h"
 
 namespace airdos {
@@ -12,13 +15,9 @@ namespace {
 
 constexpr double kMetre = 1.0;
 
-std::string Format(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string Format(const char* format, ...) {
-  char text[400];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
+std::string Decimals(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
   return text;
 }
 
@@ -31,15 +30,139 @@ Statistics ErrorAlignedBy(const MatchedTrajectories& matched, Alignment alignmen
   return AlignedError(matched, ComputeAlignment(matched, alignment));
 }
 
+/// Finds out whether one of the files holds positions only.
+void FindRotations(const Trajectory& estimate, const Trajectory& ground_truth,
+                   const MatchedTrajectories& matched, TrajectoryReport* report) {
+  const bool has_truth_none =
+      !ground_truth.has_rotations || HasPositionsOnly(matched.ground_truth, matched.estimate);
+  const bool has_estimate_none =
+      !estimate.has_rotations || HasPositionsOnly(matched.estimate, matched.ground_truth);
+  report->truth_has_rotations = !has_truth_none;
+  if (!has_truth_none && !has_estimate_none) return;
+  const std::string name =
+      has_truth_none ? NameOf("ground truth", ground_truth) : NameOf("estimate", estimate);
+  report->no_rotations_because =
+      std::string("the ") + (has_truth_none ? "ground truth" : "estimate") + " has positions only";
+  report->remarks.push_back(
+      {true, name + ": holds positions only (no rotation, or the same in all rows while the other "
+                    "file's turn): figures of rotations and relative poses are not given, of axes "
+                    "nothing is known"});
+}
+
+std::string Describe(const PoseReading& reading, const TrajectoryReport& report) {
+  const auto order = [](QuaternionOrder read) {
+    return read == QuaternionOrder::kXyzw ? "w x y z" : "x y z w";
+  };
+  std::string text;
+  if (reading.has_other_order_in_estimate) {
+    text = std::string("the estimate's quaternions as ") + order(report.estimate_order);
+  }
+  if (reading.has_other_order_in_truth) {
+    text += (text.empty() ? "" : " and ") + std::string("the ground truth's quaternions as ") +
+            order(report.truth_order);
+  }
+  if (reading.is_estimate_inverted || reading.is_truth_inverted) {
+    text += (text.empty() ? "" : " and ") +
+            std::string(reading.is_estimate_inverted ? "the estimate" : "the ground truth") +
+            " inverted";
+  }
+  return text;
+}
+
+/// Reads quaternions in the other order where the motions say so; refuses inverted poses.
+void DecideReading(const Trajectory& estimate, const Trajectory& ground_truth,
+                   const EvaluationOptions& options, MatchedTrajectories* matched,
+                   TrajectoryReport* report) {
+  report->estimate_order = estimate.order;
+  report->truth_order = ground_truth.order;
+  const std::optional<ReadingDoubt> doubt =
+      FindBetterReading(*matched, estimate.order, ground_truth.order);
+  if (!doubt) return;
+  const PoseReading& reading = doubt->reading;
+  const std::string evidence = "motions of both agree by " + Decimals("%.3f", doubt->agreement) +
+                               " with " + Describe(reading, *report) + ", by " +
+                               Decimals("%.3f", doubt->agreement_as_read) + " as they stand";
+  if (reading.is_estimate_inverted || reading.is_truth_inverted) {
+    const bool is_stated = options.is_estimate_inverted || options.is_truth_inverted;
+    throw InputError(
+        (reading.is_estimate_inverted ? NameOf("estimate", estimate)
+                                      : NameOf("ground truth", ground_truth)) +
+        ": looks like inverted poses (T_C_W, as ORB-SLAM's Tcw, where T_W_C is wanted): " +
+        evidence +
+        (doubt->do_both_inversions_fit ? ", and as well with the ground truth inverted" : "") +
+        (is_stated ? "; leave --inverted out, or name the other file"
+                   : std::string("; give --inverted ") +
+                         (reading.is_estimate_inverted ? "estimate" : "ground-truth")));
+  }
+  *matched = ReadAs(reading, estimate.order, ground_truth.order, std::move(*matched));
+  report->remarks.push_back(
+      {true, (reading.has_other_order_in_truth ? NameOf("ground truth", ground_truth)
+                                               : NameOf("estimate", estimate)) +
+                 ": its quaternions look like another order: " + evidence +
+                 "; the figures are of that reading, write TUM files with x y z w"});
+}
+
+/// Axes where rotations tell nothing of them: as given, or as they are.
+void KeepAxes(const EvaluationOptions& options, const std::string& why, TrajectoryReport* report) {
+  report->axes = options.axes.value_or(GroundTruthAxes::Optical());
+  report->axes_reason = std::string(options.axes ? "as given; " : "not looked for: ") + why;
+}
+
+void CheckGivenAxes(const MatchedTrajectories& matched, const AxesDecision& decision,
+                    TrajectoryReport* report) {
+  constexpr double kWorse = 0.1;
+  const double agreement = AgreementIn(report->axes, matched);
+  if (!decision.is_known || agreement > decision.best_agreement - kWorse) return;
+  report->remarks.push_back(
+      {true, "axes of the ground truth as given, " + report->axes.Name() +
+                 ": motions of both agree by " + Decimals("%.3f", agreement) +
+                 " only in them, by " + Decimals("%.3f", decision.agreement) + " if they are " +
+                 decision.axes.Name() +
+                 ": figures of rotations and relative poses are wrong if the axes are"});
+}
+
+/// Where positions fit, but not the motions in body axes, one file's rotations are wrong.
+bool CheckContradiction(const MatchedTrajectories& matched, const AxesDecision& decision,
+                        TrajectoryReport* report) {
+  constexpr double kAgree = 0.9;
+  const bool can_tell = decision.uses_rotation || decision.uses_translation;
+  if (!can_tell || decision.best_agreement >= kAgree || !DoPositionsFit(matched)) {
+    return false;
+  }
+  report->remarks.push_back(
+      {true, "contradiction: the positions fit, but motions in body axes agree by " +
+                 Decimals("%.3f", decision.best_agreement) +
+                 " only (1 = same): the rotations of one file are wrong or those of another body "
+                 "(order of the quaternion, an IMU's instead of the camera's?); do not believe "
+                 "figures of rotations and relative poses"});
+  return true;
+}
+
 void DecideAxes(const MatchedTrajectories& matched, const EvaluationOptions& options,
                 TrajectoryReport* report) {
   const AxesDecision decision = DetectAxes(matched);
   report->axes = options.axes.value_or(decision.axes);
   report->axes_reason = (options.axes ? "as given; " : "detected: ") + decision.Explain();
-  if (options.axes) return;
+  const bool is_contradiction = CheckContradiction(matched, decision, report);
+  if (options.axes) {
+    CheckGivenAxes(matched, decision, report);
+    return;
+  }
+  // Axes that are mirrored, or no axes, would spoil the positions that fit.
+  constexpr double kNothingFits = 0.7;
+  if (is_contradiction &&
+      (decision.best_agreement < kNothingFits || !decision.axes.is_right_handed())) {
+    report->no_rotations_because = "rotations of both contradict each other";
+    KeepAxes(options, decision.Explain(), report);
+    return;
+  }
   if (!decision.is_known) {
+    std::string warnings;  // one of them may be the reason
+    for (const Remark& remark : report->remarks) {
+      if (remark.is_warning) warnings += "; " + remark.text;
+    }
     throw InputError("ground truth: its axes cannot be told, " + decision.Explain() +
-                     ": give --gt-axes optical, ned or such as y,-z,x");
+                     ": give --gt-axes optical, ned or such as y,-z,x" + warnings);
   }
   for (const GroundTruthAxes& axes : decision.alternatives) {
     MatchedTrajectories other = matched;
@@ -48,7 +171,51 @@ void DecideAxes(const MatchedTrajectories& matched, const EvaluationOptions& opt
   }
 }
 
+void CountFrames(const Trajectory& estimate, const Trajectory& ground_truth,
+                 const EvaluationOptions& options, TrajectoryReport* report) {
+  const std::size_t num_of_slower =
+      report->has_times ? FramesOfSlowerEstimate(estimate, ground_truth) : 0;
+  report->has_truth_higher_rate = num_of_slower > 0;
+  report->are_frames_given = options.num_frames > 0;
+  report->num_frames = options.num_frames > 0 ? options.num_frames
+                       : num_of_slower > 0    ? num_of_slower
+                                              : ground_truth.num_rows();
+  if (report->num_frames < report->num_matched) {
+    throw InputError("--frames " + std::to_string(options.num_frames) + ": fewer than the " +
+                     std::to_string(report->num_matched) +
+                     " poses compared; give the number of images of the whole sequence");
+  }
+  if (report->has_truth_higher_rate) {
+    report->num_without_truth = report->num_estimate - report->num_matched;
+  }
+  report->completeness =
+      static_cast<double>(report->num_matched) / static_cast<double>(report->num_frames);
+}
+
+/// Frames without a pose, and those whose step is wrong. A pose that a truth of a higher rate has
+/// no partner for is not lost.
+std::size_t CountLost(const MatchedTrajectories& aligned, const TrajectoryReport& report) {
+  std::size_t num_with_pose = report.num_matched;
+  if (report.has_truth_higher_rate) {
+    num_with_pose = std::min(report.num_estimate, report.num_frames);
+  }
+  const std::size_t num_without = report.num_frames - num_with_pose;
+  if (report.no_rotations_because.empty()) {
+    return num_without + CountLostFrames(aligned, report.num_matched);
+  }
+  std::size_t num_wrong = 0;  // by the displacements in the aligned world
+  for (std::size_t i = 1; i < aligned.estimate.size(); ++i) {
+    const Eigen::Vector3d step =
+        aligned.estimate[i].position_m - aligned.estimate[i - 1].position_m;
+    const Eigen::Vector3d true_step =
+        aligned.ground_truth[i].position_m - aligned.ground_truth[i - 1].position_m;
+    if ((step - true_step).norm() > kLostTranslationM) ++num_wrong;
+  }
+  return num_without + num_wrong;
+}
+
 void FillRelativeErrors(const MatchedTrajectories& matched, TrajectoryReport* report) {
+  if (!report->no_rotations_because.empty()) return;
   std::vector<double> translation_m;
   std::vector<double> rotation_deg;
   for (const RelativeError& error : ErrorsPerFrame(matched)) {
@@ -65,43 +232,62 @@ void FillRelativeErrors(const MatchedTrajectories& matched, TrajectoryReport* re
   }
   report->rpe_translation_per_metre_m = ComputeStatistics(translation_m);
   report->rpe_rotation_per_metre_deg = ComputeStatistics(rotation_deg);
+  report->end_point_drift_percent = EndPointDriftPercent(matched);
+  report->segment_drifts = SegmentDrifts(matched);
 }
 
-std::string Row(const char* name, const char* unit, const Statistics& s) {
-  if (s.count == 0) return Format("  %-24s %-6s (no such motion)\n", name, unit);
-  return Format("  %-24s %-6s %9.4f %9.4f %9.4f %9.4f %9.4f\n", name, unit, s.rmse, s.mean,
-                s.median, s.max, s.std);
-}
-
-nlohmann::json StatisticsToJson(const Statistics& s) {
-  if (s.count == 0) return nullptr;
-  return {{"count", s.count},   {"rmse", s.rmse}, {"mean", s.mean},
-          {"median", s.median}, {"max", s.max},   {"std", s.std}};
+/// What the figures themselves make doubtful.
+void RemarkOnFigures(const MatchedTrajectories& matched, TrajectoryReport* report) {
+  constexpr double kSameUnit = 0.1;
+  for (const double factor : {1000.0, 100.0, 0.01, 0.001}) {
+    if (std::abs(report->sim3_scale / factor - 1) > kSameUnit || !DoPositionsFit(matched)) continue;
+    report->remarks.push_back({true, "the positions fit with a scale of " +
+                                         Decimals("%.4g", report->sim3_scale) +
+                                         ": those of one file are in mm or cm; convert them to m"});
+  }
+  const std::size_t num_frozen = CountFrozenPoses(matched);
+  constexpr std::size_t kMostByChance = 2;
+  if (num_frozen > kMostByChance) {
+    report->remarks.push_back(
+        {true, std::to_string(num_frozen) +
+                   " poses of the estimate repeat the one before to all digits while the truth "
+                   "moves: lost frames written as the last pose count as frames with one"});
+  }
+  if (report->ate_none_m.max == 0 && report->path_m > 0) {
+    report->remarks.push_back(
+        {true, "all positions of both files are the same: one file compared with itself?"});
+  }
 }
 
 }  // namespace
 
 TrajectoryReport EvaluateTrajectory(const Trajectory& estimate, const Trajectory& ground_truth,
                                     const EvaluationOptions& options) {
-  MatchedTrajectories matched = Associate(estimate, ground_truth, options.max_time_difference_s);
   TrajectoryReport report;
+  for (const Trajectory* const trajectory : {&estimate, &ground_truth}) {
+    report.remarks.insert(report.remarks.end(), trajectory->remarks.begin(),
+                          trajectory->remarks.end());
+  }
+  MatchedTrajectories matched =
+      MatchPoses(estimate, ground_truth, options.max_time_difference_s, &report.remarks);
   report.has_times = estimate.has_times;
   report.num_estimate = estimate.poses.size();
   report.num_ground_truth = ground_truth.poses.size();
   report.num_matched = matched.estimate.size();
-  if (report.num_matched < 2) {
-    throw InputError("only " + std::to_string(report.num_matched) + " of " +
-                     std::to_string(report.num_estimate) + " estimated poses match one of the " +
-                     std::to_string(report.num_ground_truth) +
-                     " of the ground truth: at least 2 are needed (see --max-diff)");
+  CountFrames(estimate, ground_truth, options, &report);
+  PoseReading stated;
+  stated.is_estimate_inverted = options.is_estimate_inverted;
+  stated.is_truth_inverted = options.is_truth_inverted;
+  matched = ReadAs(stated, estimate.order, ground_truth.order, std::move(matched));
+  FindRotations(estimate, ground_truth, matched, &report);
+  if (report.no_rotations_because.empty()) {
+    DecideReading(estimate, ground_truth, options, &matched, &report);
+    DecideAxes(matched, options, &report);
+  } else {
+    KeepAxes(options, report.no_rotations_because, &report);
   }
-  report.num_frames = options.num_frames > 0 ? options.num_frames : report.num_ground_truth;
-  report.completeness =
-      static_cast<double>(report.num_matched) / static_cast<double>(report.num_frames);
-  DecideAxes(matched, options, &report);
   for (TrajectoryPose& pose : matched.ground_truth) pose = ToOptical(pose, report.axes);
 
-  report.num_lost = CountLostFrames(matched, report.num_frames);
   report.path_m = PathLengths(matched.ground_truth).back();
   if (report.has_times) {
     report.duration_s = matched.ground_truth.back().time_s - matched.ground_truth.front().time_s;
@@ -113,81 +299,11 @@ TrajectoryReport EvaluateTrajectory(const Trajectory& estimate, const Trajectory
   report.ate_se3_m = AlignedError(matched, se3);
   report.ate_sim3_m = AlignedError(matched, sim3);
   FillRelativeErrors(matched, &report);
-  report.end_point_drift_percent = EndPointDriftPercent(matched);
-  report.segment_drifts = SegmentDrifts(matched);
-  report.aligned = {Apply(se3, matched.estimate), std::move(matched.ground_truth)};
+  RemarkOnFigures(matched, &report);
+  report.aligned = {Apply(se3, matched.estimate), matched.ground_truth};
+  report.matched = std::move(matched);
+  report.num_lost = CountLost(report.aligned, report);
   return report;
-}
-
-std::string ToTable(const TrajectoryReport& r) {
-  std::string text =
-      Format("%zu poses estimated, %zu in the ground truth, %zu matched: %.1f %% complete\n",
-             r.num_estimate, r.num_ground_truth, r.num_matched, 100 * r.completeness);
-  text += Format("%zu of %zu frames lost (no pose, or a step wrong by over %.2f m or %.0f deg)\n",
-                 r.num_lost, r.num_frames, kLostTranslationM, kLostRotationDeg);
-  text += Format("path %.3f m", r.path_m);
-  if (r.has_times) text += Format(" in %.3f s", r.duration_s);
-  text += "\nground truth axes: " + r.axes.Name() + ", " + r.axes_reason + "\n";
-  for (const AxesAlternative& other : r.alternatives) {
-    text += "  AMBIGUOUS: the motion fits axes " + other.axes.Name() +
-            (other.axes.is_right_handed() ? " (right-handed)" : " (left-handed)") +
-            Format(" as well, with ATE %.4f m\n", other.ate_se3_m.rmse);
-  }
-  text += "\n";
-  text += Format("  %-24s %-6s %9s %9s %9s %9s %9s\n", "error", "unit", "rmse", "mean", "median",
-                 "max", "std");
-  text += Row("ATE, SE(3) aligned", "m", r.ate_se3_m);
-  text += Row("ATE, Sim(3) aligned", "m", r.ate_sim3_m);
-  text += Row("ATE, not aligned", "m", r.ate_none_m);
-  text += Row("RPE per frame", "m", r.rpe_translation_per_frame_m);
-  text += Row("RPE per frame", "deg", r.rpe_rotation_per_frame_deg);
-  text += Row("RPE per metre travelled", "m/m", r.rpe_translation_per_metre_m);
-  text += Row("RPE per metre travelled", "deg/m", r.rpe_rotation_per_metre_deg);
-  text += Format("\n  Sim(3) scale %.6f; drift of the end point %.3f %% of the path\n",
-                 r.sim3_scale, r.end_point_drift_percent);
-  for (const SegmentDrift& drift : r.segment_drifts) {
-    text += Format("  drift over %3.0f m: %.3f %%, %.5f deg/m (%zu segments)\n", drift.length_m,
-                   drift.translation_percent, drift.rotation_deg_per_m, drift.num_segments);
-  }
-  return text;
-}
-
-nlohmann::json ToJson(const TrajectoryReport& r) {
-  nlohmann::json segments = nlohmann::json::array();
-  for (const SegmentDrift& drift : r.segment_drifts) {
-    segments.push_back({{"length_m", drift.length_m},
-                        {"num_segments", drift.num_segments},
-                        {"translation_percent", drift.translation_percent},
-                        {"rotation_deg_per_m", drift.rotation_deg_per_m}});
-  }
-  nlohmann::json alternatives = nlohmann::json::array();
-  for (const AxesAlternative& other : r.alternatives) {
-    alternatives.push_back({{"axes", other.axes.Name()},
-                            {"right_handed", other.axes.is_right_handed()},
-                            {"ate_se3_m", StatisticsToJson(other.ate_se3_m)}});
-  }
-  return {{"poses_estimated", r.num_estimate},
-          {"poses_ground_truth", r.num_ground_truth},
-          {"poses_matched", r.num_matched},
-          {"completeness", r.completeness},
-          {"frames", r.num_frames},
-          {"frames_lost", r.num_lost},
-          {"path_m", r.path_m},
-          {"duration_s", r.has_times ? nlohmann::json(r.duration_s) : nlohmann::json(nullptr)},
-          {"ground_truth_axes", r.axes.Name()},
-          {"ground_truth_right_handed", r.axes.is_right_handed()},
-          {"ground_truth_axes_alternatives", alternatives},
-          {"ground_truth_axes_reason", r.axes_reason},
-          {"ate_none_m", StatisticsToJson(r.ate_none_m)},
-          {"ate_se3_m", StatisticsToJson(r.ate_se3_m)},
-          {"ate_sim3_m", StatisticsToJson(r.ate_sim3_m)},
-          {"sim3_scale", r.sim3_scale},
-          {"rpe_translation_per_frame_m", StatisticsToJson(r.rpe_translation_per_frame_m)},
-          {"rpe_rotation_per_frame_deg", StatisticsToJson(r.rpe_rotation_per_frame_deg)},
-          {"rpe_translation_per_metre_m", StatisticsToJson(r.rpe_translation_per_metre_m)},
-          {"rpe_rotation_per_metre_deg", StatisticsToJson(r.rpe_rotation_per_metre_deg)},
-          {"end_point_drift_percent", r.end_point_drift_percent},
-          {"segment_drifts", segments}};
 }
 
 }  // namespace airdos

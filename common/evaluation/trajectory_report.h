@@ -10,14 +10,18 @@
 #include "common/evaluation/statistics.h"
 #include "common/evaluation/trajectory.h"
 #include "common/evaluation/trajectory_error.h"
+#include "common/evaluation/trajectory_file.h"
 
 namespace airdos {
 
 struct EvaluationOptions {
   double max_time_difference_s = 0.01;
   std::optional<GroundTruthAxes> axes;  ///< nothing: find out
-  /// Images of the sequence, for the completeness; 0: as many as the ground truth has poses.
+  /// Images of the sequence, for the completeness; 0: as many as the ground truth has rows, or, if
+  /// its rate is higher, the estimate (see FramesOfSlowerEstimate()).
   std::size_t num_frames = 0;
+  bool is_estimate_inverted = false;  ///< its poses are T_C_W
+  bool is_truth_inverted = false;
 };
 
 /// Other axes of the ground truth that the motion fits as well, and what follows from them.
@@ -33,13 +37,23 @@ struct TrajectoryReport {
   std::size_t num_matched = 0;
   double completeness = 0;     ///< matched poses / frames (see EvaluationOptions::num_frames)
   std::size_t num_frames = 0;  ///< EvaluationOptions::num_frames, or what stands for it
-  std::size_t num_lost = 0;    ///< see CountLostFrames()
-  double path_m = 0;           ///< of the ground truth's matched poses
-  double duration_s = 0;       ///< of the matched poses; 0 for KITTI rows
+  bool are_frames_given = false;
+  bool has_truth_higher_rate = false;  ///< then the estimate's rows are the frames
+  std::size_t num_without_truth = 0;   ///< poses that such a truth has no partner for: not lost
+  std::size_t num_lost = 0;            ///< see CountLostFrames()
+  double path_m = 0;                   ///< of the ground truth's matched poses
+  double duration_s = 0;               ///< of the matched poses; 0 for KITTI rows
 
   GroundTruthAxes axes;
   std::string axes_reason;
   std::vector<AxesAlternative> alternatives;  ///< none where the axes were given
+
+  /// Why figures that need the rotations of both are not given; empty: they are.
+  std::string no_rotations_because;
+  bool truth_has_rotations = true;
+  QuaternionOrder estimate_order = QuaternionOrder::kNone;  ///< as read from the files
+  QuaternionOrder truth_order = QuaternionOrder::kNone;
+  Remarks remarks;  ///< of the files and of this comparison
 
   Statistics ate_none_m;
   Statistics ate_se3_m;   ///< after the best rigid motion of the estimate's world
@@ -55,19 +69,26 @@ struct TrajectoryReport {
   double end_point_drift_percent = 0;
   std::vector<SegmentDrift> segment_drifts;
 
-  // For the plot: in optical axes, the estimate after SE(3) alignment.
   bool has_times = false;
+  MatchedTrajectories matched;  ///< what was compared: the truth in optical axes
+  // For the plot: the same, the estimate after SE(3) alignment.
   MatchedTrajectories aligned;
 };
 
-/// Throws InputError where fewer than two poses match or the ground truth's axes remain unknown.
+/// Compares what can be compared, and says in `remarks` what was assumed and what is doubtful.
+/// Throws InputError where no figure would be right: fewer than two poses match, rows without times
+/// differ in number, poses are inverted, more poses than frames, or the ground truth's axes remain
+/// unknown although the positions do not fit.
 TrajectoryReport EvaluateTrajectory(const Trajectory& estimate, const Trajectory& ground_truth,
                                     const EvaluationOptions& options);
 
-/// Aligned columns for a terminal.
+/// Aligned columns for a terminal, the remarks last.
 std::string ToTable(const TrajectoryReport& report);
 /// The same figures; the unit is in each key.
 nlohmann::json ToJson(const TrajectoryReport& report);
+nlohmann::json RemarksToJson(const Remarks& remarks);
+/// "WARNING: ..." or "NOTE: ..."
+std::string ToLine(const Remark& remark);
 
 }  // namespace airdos
 

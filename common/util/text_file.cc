@@ -55,7 +55,7 @@ void CheckEncoding(const std::string& path, std::string* first_line) {
 
 }  // namespace
 
-std::vector<TextLine> ReadTextLines(const std::string& path) {
+std::vector<TextLine> ReadTextLines(const std::string& path, std::string* heading) {
   std::ifstream file(path);
   if (!file) throw InputError(path + ": cannot be read");
   std::vector<TextLine> lines;
@@ -73,7 +73,12 @@ std::vector<TextLine> ReadTextLines(const std::string& path) {
     TextLine line;
     line.number = number;
     line.words.assign(std::istream_iterator<std::string>(stream), {});
-    if (!line.words.empty() && line.words[0][0] != '#') lines.push_back(std::move(line));
+    if (line.words.empty()) continue;
+    if (line.words[0][0] != '#') {
+      lines.push_back(std::move(line));
+    } else if (heading != nullptr && lines.empty()) {
+      *heading = text.substr(text.find('#') + 1);
+    }
   }
   if (file.bad()) throw InputError(path + ": cannot be read");
   return lines;

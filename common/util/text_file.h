@@ -15,8 +15,9 @@ struct TextLine {
 
 /// The lines that are neither empty nor a comment (#); a byte order mark of UTF-8 and the CR of
 /// Windows' line ends are left out. Throws InputError naming the file where it cannot be read, is
-/// UTF-16, or has more than 1,000,000 lines or one of more than 20,000 bytes.
-std::vector<TextLine> ReadTextLines(const std::string& path);
+/// UTF-16, or has more than 1,000,000 lines or one of more than 20,000 bytes. `heading`, where
+/// given, gets the text of the last comment above the first line, which often names the columns.
+std::vector<TextLine> ReadTextLines(const std::string& path, std::string* heading = nullptr);
 
 /// The words from number `first` on as finite numbers. Throws InputError naming file, line and
 /// word.

@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/evaluation/trajectory.h"
+
 namespace airdos {
 
 // The subcommands of airdos-evaluate. Each adds itself with its options and runs when it was given;
@@ -13,6 +15,9 @@ void AddPeopleCommand(CLI::App* app);
 void AddCurveCommand(CLI::App* app);
 void AddSpeedCommand(CLI::App* app);
 void AddAblationCommand(CLI::App* app);
+
+/// Warnings once more, on the standard error: the table may go to a file.
+void SayWarnings(const Remarks& remarks);
 
 }  // namespace airdos
 

@@ -4,6 +4,8 @@
 #include <string>
 
 #include "common/evaluation/people_report.h"
+#include "common/evaluation/trajectory_report.h"
+#include "common/util/error.h"
 #include "common/util/json_file.h"
 #include "processes/tools/evaluate_command.h"
 
@@ -18,15 +20,34 @@ struct PeopleArguments {
   std::string json;
 };
 
+/// The poses of the camera that belong together. The truth must be in optical axes.
+TrajectoryReport CompareCameras(const PeopleArguments& arguments) {
+  EvaluationOptions options;
+  options.max_time_difference_s = 0.001;
+  options.axes = GroundTruthAxes::Optical();
+  const Trajectory estimate = ReadTrajectory(arguments.estimate);
+  const TrajectoryReport report =
+      EvaluateTrajectory(estimate, ReadTrajectory(arguments.ground_truth), options);
+  if (!report.no_rotations_because.empty()) {
+    throw InputError(arguments.estimate + " against " + arguments.ground_truth + ": " +
+                     report.no_rotations_because +
+                     "; people are compared in the axes of the camera, give poses with rotations");
+  }
+  return report;
+}
+
 void RunPeople(const PeopleArguments& arguments) {
-  constexpr double kMaxTimeDifferenceS = 0.001;
-  const MatchedTrajectories cameras =
-      Associate(ReadTrajectory(arguments.estimate), ReadTrajectory(arguments.ground_truth),
-                kMaxTimeDifferenceS);
-  const PeopleReport report =
-      EvaluatePeople(ReadPeople(arguments.people), ReadTruePeople(arguments.joints), cameras);
+  const TrajectoryReport cameras = CompareCameras(arguments);
+  const PeopleReport report = EvaluatePeople(ReadPeople(arguments.people),
+                                             ReadTruePeople(arguments.joints), cameras.matched);
   std::fputs(ToTable(report).c_str(), stdout);
-  if (!arguments.json.empty()) WriteJson(ToJson(report), arguments.json);
+  for (const Remark& remark : cameras.remarks) std::printf("%s\n", ToLine(remark).c_str());
+  if (!arguments.json.empty()) {
+    nlohmann::json json = ToJson(report);
+    json["remarks"] = RemarksToJson(cameras.remarks);
+    WriteJson(json, arguments.json);
+  }
+  SayWarnings(cameras.remarks);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ struct TrajectoryArguments {
   std::string ground_truth;
   std::string times;
   std::string axes = "auto";
+  std::string inverted;
   double max_difference_s = 0.01;
   std::size_t num_frames = 0;
   std::string json;
@@ -25,14 +26,13 @@ struct TrajectoryArguments {
 void RunTrajectory(const TrajectoryArguments& arguments) {
   Trajectory estimate = ReadTrajectory(arguments.estimate);
   Trajectory ground_truth = ReadTrajectory(arguments.ground_truth);
-  if (!arguments.times.empty()) {
-    if (!estimate.has_times) SetTimes(arguments.times, &estimate);
-    if (!ground_truth.has_times) SetTimes(arguments.times, &ground_truth);
-  }
+  if (!arguments.times.empty()) SetTimesOfPair(arguments.times, &estimate, &ground_truth);
   EvaluationOptions options;
   options.max_time_difference_s = arguments.max_difference_s;
   options.num_frames = arguments.num_frames;
   if (arguments.axes != "auto") options.axes = GroundTruthAxes::Parse(arguments.axes);
+  options.is_estimate_inverted = arguments.inverted == "estimate";
+  options.is_truth_inverted = arguments.inverted == "ground-truth";
   const TrajectoryReport report = EvaluateTrajectory(estimate, ground_truth, options);
   std::fputs(ToTable(report).c_str(), stdout);
   if (!arguments.json.empty()) {
@@ -44,18 +44,28 @@ void RunTrajectory(const TrajectoryArguments& arguments) {
   if (!arguments.plot.empty()) {
     WritePng(DrawEvaluation(report, arguments.estimate), arguments.plot);
   }
+  SayWarnings(report.remarks);
 }
 
 }  // namespace
 
+void SayWarnings(const Remarks& remarks) {
+  for (const Remark& remark : remarks) {
+    if (remark.is_warning) std::fprintf(stderr, "airdos-evaluate: %s\n", ToLine(remark).c_str());
+  }
+}
+
 void AddTrajectoryCommand(CLI::App* app) {
   const auto arguments = std::make_shared<TrajectoryArguments>();
   CLI::App* const command = app->add_subcommand("trajectory", "Errors of a camera trajectory");
-  command->add_option("--estimate", arguments->estimate, "TUM or KITTI file, optical axes")
+  command
+      ->add_option("--estimate", arguments->estimate,
+                   "trajectory in optical axes: TUM, KITTI, EuRoC csv or TartanAir")
       ->required();
-  command->add_option("--ground-truth", arguments->ground_truth, "TUM or KITTI file")->required();
+  command->add_option("--ground-truth", arguments->ground_truth, "true trajectory, likewise")
+      ->required();
   command->add_option("--times", arguments->times,
-                      "times (s) of the rows of a KITTI file, one a line, to compare it with TUM");
+                      "times of the rows of a file without times (KITTI), one a line for each row");
   command
       ->add_option(
           "--gt-axes", arguments->axes,
@@ -66,12 +76,17 @@ void AddTrajectoryCommand(CLI::App* app) {
         return "'" + text + "' is none of auto, optical, ned, three axes such as y,-z,x";
       })
       ->capture_default_str();
+  command
+      ->add_option("--inverted", arguments->inverted,
+                   "the file whose poses are T_C_W (as ORB-SLAM's Tcw) instead of T_W_C: estimate "
+                   "or ground-truth")
+      ->check(CLI::IsMember({"estimate", "ground-truth"}));
   command->add_option("--max-diff", arguments->max_difference_s, "largest time difference (s)")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--frames", arguments->num_frames,
                       "images of the sequence, for the completeness (default: as many as the "
-                      "ground truth has poses)");
+                      "ground truth has rows, or the estimate if the truth has a higher rate)");
   command->add_option("--json", arguments->json, "file to write all figures to");
   command->add_option("--plot", arguments->plot, "PNG file to draw trajectories and errors into");
   command->callback([arguments] { RunTrajectory(*arguments); });

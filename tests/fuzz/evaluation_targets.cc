@@ -34,6 +34,12 @@ constexpr char kTum[] = "0 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n0.2 2 0 0.5 0 0.099
 constexpr char kKitti[] =
     "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 2\n0 0 1 0 0 1 0 0 -1 0 0 4\n";
 
+constexpr char kEuroc[] =
+    "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
+    "q_RS_z []\n1400000000000000000,0,0,0,1,0,0,0\n1400000000100000000,0,1,0,,,,\n"
+    "1400000000200000000,0,2,0.5,0.995004,0,0.0998334,0\n";
+constexpr char kPositions[] = "t;x;y;z\n0;0;0;0\n100;1;0;0\n200;2;0;nan\n";
+
 void RunTrajectory(const std::uint8_t* data, std::size_t size) {
   FuzzInput input(data, size);
   const bool draws = input.U8() == 1;
@@ -43,9 +49,7 @@ void RunTrajectory(const std::uint8_t* data, std::size_t size) {
   try {
     Trajectory estimate = ReadTrajectory(estimate_path);
     Trajectory truth = ReadTrajectory(truth_path);
-    if (estimate.has_times != truth.has_times) {
-      SetTimes(times_path, estimate.has_times ? &truth : &estimate);
-    }
+    if (estimate.has_times != truth.has_times) SetTimesOfPair(times_path, &estimate, &truth);
     const TrajectoryReport report = EvaluateTrajectory(estimate, truth, EvaluationOptions());
     ToTable(report);
     JsonText(ToJson(report));
@@ -56,7 +60,8 @@ void RunTrajectory(const std::uint8_t* data, std::size_t size) {
 
 std::vector<FuzzBytes> TrajectorySeeds() {
   return {Blocks(true, {kTum, kTum, ""}), Blocks(false, {kKitti, kKitti, ""}),
-          Blocks(false, {kKitti, kTum, "0\n0.1\n0.2\n"})};
+          Blocks(false, {kKitti, kTum, "0\n0.1\n0.2\n"}), Blocks(true, {kEuroc, kEuroc, ""}),
+          Blocks(true, {kPositions, kTum, ""})};
 }
 
 // --- people

@@ -17,6 +17,7 @@
 #include "common/evaluation/statistics.h"
 #include "common/evaluation/trajectory.h"
 #include "common/evaluation/trajectory_error.h"
+#include "common/evaluation/trajectory_file.h"
 #include "common/evaluation/trajectory_plot.h"
 #include "common/evaluation/trajectory_report.h"
 #include "common/util/error.h"
@@ -102,10 +103,16 @@ TEST(AssociateTest, EachPoseOfTheShorterGetsTheNearest) {
 }
 
 TEST(AssociateTest, RowsByNumber) {
-  Trajectory estimate = {false, Bend(3)};
+  Trajectory estimate = {false, Bend(5)};
   Trajectory truth = {false, Bend(5)};
-  EXPECT_EQ(Associate(estimate, truth, 0.01).ground_truth.size(), 3u);
-  EXPECT_NE(MessageOf([&] { Associate(truth, estimate, 0.01); }), "no error");
+  EXPECT_EQ(Associate(estimate, truth, 0.01).ground_truth.size(), 5u);
+  estimate.poses.pop_back();  // it may be any row that lacks
+  EXPECT_NE(MessageOf([&] { Associate(estimate, truth, 0.01); }).find("has 4 rows"),
+            std::string::npos);
+  EXPECT_NE(MessageOf([&] { Associate(truth, estimate, 0.01); }).find("has 4: "),
+            std::string::npos);
+  estimate.num_lost_rows = 1;  // a row of nan
+  EXPECT_EQ(Associate(estimate, truth, 0.01).ground_truth.size(), 4u);
   truth.has_times = true;
   EXPECT_NE(MessageOf([&] { Associate(estimate, truth, 0.01); }).find("--times"),
             std::string::npos);
@@ -371,12 +378,19 @@ TEST_F(TrajectoryFileTest, ReadsBothFormats) {
 TEST_F(TrajectoryFileTest, NamesTheLine) {
   EXPECT_EQ(MessageFor(""), path_ + ": holds no pose");
   EXPECT_EQ(MessageFor("1 2 3\n"),
-            path_ + ":1: must hold 8 numbers (TUM) or 12 (KITTI) in each row, holds 3");
+            path_ +
+                ":1: holds 3 numbers a row: wanted are 8 (t x y z qx qy qz qw, TUM), 12 (KITTI), "
+                "17 (EuRoC's state_groundtruth), 7 (x y z qx qy qz qw, TartanAir) or 4 (t x y z)");
   EXPECT_EQ(MessageFor("1 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 x\n"),
             path_ + ":2: 'x' is not a finite number");
   EXPECT_EQ(MessageFor("2 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1\n"),
-            path_ + ":2: time '1' lies before that of the row above");
-  EXPECT_EQ(MessageFor("2 1 2 3 0 0 0 2\n"), path_ + ":1: the quaternion is not of length 1");
+            path_ +
+                ":2: time 1 lies before that of the row above; put the rows in the order of "
+                "their times (sort -g), each once");
+  EXPECT_EQ(MessageFor("2 1 2 3 0 0 0 2\n"),
+            path_ +
+                ":1: the quaternion is not of length 1 but 2.000000; the columns are not those "
+                "of TUM (t x y z qx qy qz qw)?");
 }
 
 TEST(ChartTest, TicksAreRound) {
