@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "processes/node/program_cli.h"
+
 namespace airdos {
 
 // The subcommands of airdos-evaluate. Each adds itself with its options and runs when it was given;

@@ -5,6 +5,7 @@
 
 #include "common/evaluation/people_report.h"
 #include "common/util/json_file.h"
+#include "common/util/output_files.h"
 #include "processes/tools/evaluate_command.h"
 
 namespace airdos {
@@ -16,9 +17,13 @@ struct PeopleArguments {
   std::string estimate;
   std::string ground_truth;
   std::string json;
+  bool force = false;
 };
 
 void RunPeople(const PeopleArguments& arguments) {
+  const OutputFiles outputs({arguments.json}, {{arguments.people, arguments.joints,
+                                                arguments.estimate, arguments.ground_truth},
+                                               arguments.force});
   constexpr double kMaxTimeDifferenceS = 0.001;
   const MatchedTrajectories cameras =
       Associate(ReadTrajectory(arguments.estimate), ReadTrajectory(arguments.ground_truth),
@@ -35,16 +40,16 @@ void AddPeopleCommand(CLI::App* app) {
   const auto arguments = std::make_shared<PeopleArguments>();
   CLI::App* const command =
       app->add_subcommand("people", "Errors of people: joints, identities, lengths of segments");
-  command->add_option("--people", arguments->people, "people.jsonl of a map")->required();
-  command->add_option("--joints", arguments->joints, "true joints: joints_gt.json, or its .gz")
+  AddFile("--people", &arguments->people, "people.jsonl of a map", command)->required();
+  AddFile("--joints", &arguments->joints, "true joints: joints_gt.json, or its .gz", command)
       ->required();
-  command->add_option("--estimate", arguments->estimate, "trajectory.tum of the same map")
+  AddFile("--estimate", &arguments->estimate, "trajectory.tum of the same map", command)
       ->required();
-  command
-      ->add_option("--ground-truth", arguments->ground_truth,
-                   "TUM file of the true camera, optical axes, in the world of the true joints")
+  AddFile("--ground-truth", &arguments->ground_truth,
+          "TUM file of the true camera, optical axes, in the world of the true joints", command)
       ->required();
-  command->add_option("--json", arguments->json, "file to write all figures to");
+  AddFile("--json", &arguments->json, "file to write all figures to", command);
+  AddForce(&arguments->force, command);
   command->callback([arguments] { RunPeople(*arguments); });
 }
 
