@@ -186,6 +186,49 @@ TEST_F(UserCases, CaseC07WhatCannotBeWrittenIsOneLineAndReplayLeavesNothingBehin
   EXPECT_FALSE(fs::exists("airdos_map"));
 }
 
+// As a user without rights there: the superuser may write everywhere.
+TEST_F(UserCases, CaseC07ReadOnlyFoldersAndUnreadableInputs) {
+  const std::string log = WriteLog("in.lcm", 40);
+  const std::string secret = WriteLog("secret.lcm", 40);
+  fs::create_directories(Path("read_only"));
+  chmod(secret.c_str(), 0);
+  chmod(Path("read_only").c_str(), 0555);
+  std::vector<std::string> launcher;
+  if (geteuid() == 0) {
+    launcher = {"setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "--"};
+    std::vector<std::string> probe = launcher;
+    probe.insert(probe.end(), {Program("airdos-replay"), "--version"});
+    ChildProcess process(probe, Path("said"));
+    if (process.Wait(kDeadline_s).value_or(-1) != 0) {
+      GTEST_SKIP() << "another user cannot run the programs here: " << process.Errors();
+    }
+  }
+  const std::string place = Path("read_only");
+  const std::vector<std::vector<std::string>> commands = {
+      {"airdos-replay", log, "--run-dir", place},
+      {"airdos-replay", log, "--run-dir", place + "/new"},
+      {"airdos-replay", log, "--out", place + "/out.lcm"},
+      {"airdos-replay", secret},
+      {"airdos-check", secret},
+      {"airdos-check", log, "--json", place + "/findings.json"},
+      {"airdos-stereo-player", log, "--write-log", place + "/out.lcm"},
+      {"airdos-simulate", "--out", place + "/out.lcm"},
+      {"airdos-map-recorder", "--lcm-url", "memq://", "--run-dir", place},
+  };
+  for (const std::vector<std::string>& words : commands) {
+    std::vector<std::string> command = launcher;
+    command.push_back(Program(words[0]));
+    command.insert(command.end(), words.begin() + 1, words.end());
+    ChildProcess process(command, Path("said"));
+    EXPECT_EQ(process.Wait(kDeadline_s).value_or(-1), 2) << words[0] << process.Errors();
+    const std::string errors = process.Errors();
+    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
+    EXPECT_NE(errors.find("Permission denied"), std::string::npos) << errors;
+    EXPECT_NE(errors.find(words[1] == secret ? secret : place), std::string::npos) << errors;
+  }
+  EXPECT_TRUE(fs::is_empty(place));
+}
+
 TEST_F(UserCases, CaseC09OfTwoReplaysIntoOneFolderTheSecondIsRefused) {
   const std::string log = WriteLog("in.lcm", 400);
   const std::string run = Path("run");
