@@ -32,7 +32,25 @@ die_usage() {
 }
 
 # The comment at the top of the script is its help.
-print_help() { sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"; }
+print_help() {
+  sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"
+  echo "With --version alone it prints its name, version and commit."
+}
+
+# As the programs do: "run_live.sh 0.1.0 (abc1234)".
+print_version() {
+  local version commit=unknown
+  if [[ -e $AIRDOS_ROOT/CMakeLists.txt ]]; then
+    version=$(sed -n 's/^project(airdos VERSION \([0-9.]*\).*/\1/p' "$AIRDOS_ROOT/CMakeLists.txt")
+    if git -C "$AIRDOS_ROOT" ls-files --error-unmatch CMakeLists.txt > /dev/null 2>&1; then
+      commit=$(git -C "$AIRDOS_ROOT" rev-parse --short=7 HEAD 2> /dev/null) || commit=unknown
+    fi
+    echo "$(basename "$0") $version ($commit)"
+  else # installed: that of the programs beside it
+    version=$("$AIRDOS_BIN/airdos-check" --version) || die "$AIRDOS_BIN/airdos-check is missing"
+    echo "$(basename "$0") ${version#* }"
+  fi
+}
 
 # need_value "$@": the option in $1 must be followed by its value.
 need_value() { (($# >= 2)) || die_usage "$1 needs a value (see --help)"; }
@@ -72,3 +90,9 @@ enter_network() {
 
 # state_of KEY FOLDER: what run_live.sh wrote down about its run.
 state_of() { sed -n "s/^$1=//p" "$2/state"; }
+
+# A sourced file sees the arguments of its script, so all of them answer.
+if [[ ${1:-} == --version ]]; then
+  print_version
+  exit 0
+fi

@@ -11,6 +11,8 @@ set -euo pipefail
 # shellcheck source=launch_scripts/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
+# The folder that nobody named is the demo's own.
+replace=(--force)
 log=$AIRDOS_ROOT/logs/road_crossing06.lcm
 run_dir=$AIRDOS_ROOT/logs/runs/demo
 while (($# > 0)); do
@@ -23,6 +25,7 @@ while (($# > 0)); do
     --run-dir)
       need_value "$@"
       run_dir=$2
+      replace=()
       shift
       ;;
     --help | -h)
@@ -42,17 +45,18 @@ build_programs
 
 say "step 3 of 4: replay of $log"
 mkdir -p "$run_dir"
-"$AIRDOS_BIN/airdos-replay" "$log" --out "$run_dir/output.lcm" --run-dir "$run_dir"
+"$AIRDOS_BIN/airdos-replay" "$log" --out "$run_dir/output.lcm" --run-dir "$run_dir" "${replace[@]}"
 
 say "step 4 of 4: evaluation and pictures"
 if [[ -s $run_dir/ground_truth.tum ]]; then
   "$AIRDOS_BIN/airdos-evaluate" trajectory --estimate "$run_dir/trajectory.tum" \
-    --ground-truth "$run_dir/ground_truth.tum" --json "$run_dir/evaluation.json" --plot "$run_dir/trajectory.png"
+    --ground-truth "$run_dir/ground_truth.tum" --json "$run_dir/evaluation.json" --plot "$run_dir/trajectory.png" \
+    "${replace[@]}"
 else
   say "the log holds no ground truth, so there is nothing to compare the trajectory with"
 fi
 
-"$AIRDOS_BIN/airdos-map" plot "$run_dir/map.airdos" --out "$run_dir/map.png"
+"$AIRDOS_BIN/airdos-map" plot "$run_dir/map.airdos" --out "$run_dir/map.png" "${replace[@]}"
 
 say "results:"
 for file in "$run_dir"/*; do printf '  %9s  %s\n' "$(du -h "$file" | cut -f1)" "$file"; done

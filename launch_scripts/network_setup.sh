@@ -25,6 +25,7 @@ while [ $# -gt 0 ]; do
       interface=$2
       shift ;;
     -h|--help) usage; exit 0 ;;
+    --version) . "$(dirname "$0")/common.sh" --version ;; # which prints it and ends
     *) echo "network_setup.sh: unknown argument '$1'" >&2; exit 2 ;;
   esac
   shift

@@ -7,6 +7,8 @@
 #include <sstream>
 
 #include "common/util/error.h"
+#include "common/util/input_file.h"
+#include "common/util/suggestion.h"
 
 namespace airdos {
 namespace {
@@ -36,9 +38,20 @@ void Flatten(const YAML::Node& node, const std::string& prefix, const std::strin
   }
 }
 
+/// As YAML reads it again: quoted where it is not plain.
+std::string Quoted(const std::string& value) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./,+-";
+  if (!value.empty() && value.find_first_not_of(kPlain) == std::string::npos) return value;
+  YAML::Emitter text;
+  text << YAML::DoubleQuoted << value;
+  return text.c_str();
+}
+
 }  // namespace
 
 ConfigReader ConfigReader::FromFile(const std::string& path) {
+  RequireRegularFile(path);
   std::ifstream file(path);
   if (!file) throw InputError(path + ": cannot be read");
   std::string text(kMaxTextBytes + 1, '\0');  // one more, which FromString() refuses
@@ -69,7 +82,9 @@ void ConfigReader::Override(const std::string& assignment) {
   }
   const std::string key = assignment.substr(0, equals);
   const auto it = values_.find(key);
-  if (it == values_.end()) Fail(key, assignment.substr(equals + 1), "there is no such key");
+  if (it == values_.end()) {
+    Fail(key, assignment.substr(equals + 1), "there is no such key" + DidYouMean(key, Keys()));
+  }
   it->second = assignment.substr(equals + 1);
 }
 
@@ -121,19 +136,28 @@ int ConfigReader::ReadChoice(const std::string& key, const std::vector<std::stri
     if (choices[i] == raw) return static_cast<int>(i);
     list += (i == 0 ? "" : ", ") + choices[i];
   }
-  Fail(key, raw, "must be one of " + list);
+  Fail(key, raw, "must be one of " + list + DidYouMean(raw, choices));
 }
 
 void ConfigReader::Finish() const {
   for (const auto& [key, value] : values_) {
-    if (read_.count(key) == 0) Fail(key, value, "there is no such key");
+    if (read_.count(key) > 0) continue;
+    Fail(key, value,
+         "there is no such key" +
+             DidYouMean(key, std::vector<std::string>(read_.begin(), read_.end())));
   }
 }
 
 std::string ConfigReader::Resolved() const {
   std::string text;
-  for (const auto& [key, value] : values_) text += key + ": " + value + "\n";
+  for (const auto& [key, value] : values_) text += key + ": " + Quoted(value) + "\n";
   return text;
+}
+
+std::vector<std::string> ConfigReader::Keys() const {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : values_) keys.push_back(key);
+  return keys;
 }
 
 }  // namespace airdos

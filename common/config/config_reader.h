@@ -11,12 +11,17 @@ namespace airdos {
 
 /// Strict reader of one YAML file of scalars under sections: every key that the program reads must
 /// be there, and every key that is there must be read. Throws InputError naming file, key and
-/// value. Keys are written `section.key`. At most 100,000 bytes, 1,000 keys, 8 levels.
+/// value, and the key or choice that a mistyped one is near to. Keys are written `section.key`. At
+/// most 100,000 bytes, 1,000 keys, 8 levels.
 class ConfigReader {
  public:
   static ConfigReader FromFile(const std::string& path);
   /// `name` stands for the file in messages.
   static ConfigReader FromString(const std::string& text, const std::string& name);
+
+  bool Has(const std::string& key) const { return values_.count(key) > 0; }
+  /// All keys of the file, in order.
+  std::vector<std::string> Keys() const;
 
   /// Replaces one value; `assignment` is "section.key=value" and the key must be in the file.
   void Override(const std::string& assignment);
@@ -32,7 +37,8 @@ class ConfigReader {
   /// Throws if the file has a key that was not read.
   void Finish() const;
 
-  /// Every key with the value in force, one `section.key: value` a line, in order of the keys.
+  /// Every key with the value in force, one `section.key: value` a line, in order of the keys; a
+  /// reader of its own reads it again.
   std::string Resolved() const;
 
  private:

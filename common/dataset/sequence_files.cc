@@ -13,6 +13,7 @@
 #include "common/dataset/times_file.h"
 #include "common/util/error.h"
 #include "common/util/image_header.h"
+#include "common/util/input_file.h"
 #include "common/util/text_file.h"
 
 namespace airdos {
@@ -54,6 +55,7 @@ bool SplitDecimal(std::string text, std::string* digits, int* num_integer_digits
 }  // namespace
 
 std::vector<std::uint8_t> ReadBytes(const std::string& path) {
+  RequireRegularFile(path);
   std::ifstream file(path, std::ios::binary);
   std::error_code error;
   const std::uintmax_t size = fs::file_size(path, error);  // fails for what is no plain file

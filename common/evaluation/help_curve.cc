@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/util/error.h"
+#include "common/util/input_file.h"
 #include "common/util/json_file.h"
 
 namespace airdos {
@@ -152,6 +153,7 @@ json CapToJson(const std::optional<int>& cap) { return cap ? json(*cap) : json(n
 }  // namespace
 
 std::vector<CappedRun> ReadCappedRuns(const std::string& path) {
+  RequireRegularFile(path);
   std::ifstream file(path);
   if (!file) throw InputError(path + ": cannot be read");
   std::vector<CappedRun> runs;

@@ -8,6 +8,7 @@
 
 #include "common/human/skeleton.h"
 #include "common/util/error.h"
+#include "common/util/input_file.h"
 #include "common/util/json_file.h"
 
 namespace airdos {
@@ -32,6 +33,7 @@ Joints ParseJoints(const json& object) {
 
 /// A file, unpacked if it is of gzip.
 std::string ReadUnpacked(const std::string& path) {
+  RequireRegularFile(path);
   const gzFile file = gzopen(path.c_str(), "rb");
   if (file == nullptr) throw InputError(path + ": cannot be read");
   std::string text;
@@ -60,6 +62,7 @@ std::optional<int> CountVisible(const json& human, const char* key) {
 }  // namespace
 
 std::vector<PersonState> ReadPeople(const std::string& path) {
+  RequireRegularFile(path);
   std::ifstream file(path);
   if (!file) throw InputError(path + ": cannot be read");
   std::vector<PersonState> states;

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "common/util/error.h"
+#include "common/util/input_file.h"
 #include "common/util/json_file.h"
 
 namespace airdos {
@@ -79,6 +80,7 @@ std::optional<SolveTime> ParseSolve(const json& object) {
 }
 
 std::ifstream OpenText(const std::string& path) {
+  RequireRegularFile(path);
   std::ifstream file(path);
   if (!file) throw InputError(path + ": cannot be read");
   return file;

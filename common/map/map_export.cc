@@ -227,17 +227,66 @@ std::string HumanToJson(FrameId frame, HumanId human, const MapHuman& state) {
          ", \"segment_lengths_m\": {" + lengths + "}}";
 }
 
-std::vector<std::string> ExportMap(const FourDMap& map, const std::string& folder) {
+std::vector<std::string> ExportNames(const std::string& folder, const std::string& prefix) {
+  std::vector<std::string> names;
+  for (const char* name : {"trajectory.tum", "trajectory_live.tum", "trajectory.kitti",
+                           "ground_truth.tum", "map.ply", "people.jsonl"}) {
+    names.push_back(prefix + name);
+  }
   std::error_code error;
-  fs::remove_all(folder + "/people", error);  // tracks of an earlier export
-  fs::create_directories(folder + "/people", error);
-  if (error) throw InputError(folder + "/people: " + error.message());
+  for (const auto& entry : fs::directory_iterator(folder + "/" + prefix + "people", error)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_track = name.size() > 4 && name.substr(name.size() - 4) == ".tum" &&
+                          name.find_first_not_of("0123456789") == name.size() - 4;
+    if (is_track) names.push_back(prefix + "people/" + name);
+  }
+  return names;
+}
+
+std::vector<std::string> ExportMap(const FourDMap& map, const std::string& prefix,
+                                   const std::string& group, OutputFolder* results) {
+  const std::string stage = results->PathOf(".airdos_export");
+  std::error_code error;
+  fs::remove_all(stage, error);  // of an export that was killed
+  fs::create_directories(stage + "/people", error);
+  if (error) throw InputError(stage + ": cannot be made: " + error.message());
   std::vector<std::string> paths;
-  ExportTrajectories(map, folder, &paths);
-  paths.push_back(folder + "/map.ply");
-  ExportPly(map, paths.back());
-  ExportPeople(map, folder, &paths);
+  try {
+    ExportTrajectories(map, stage, &paths);
+    paths.push_back(stage + "/map.ply");
+    ExportPly(map, paths.back());
+    ExportPeople(map, stage, &paths);
+    for (std::string& path : paths) {
+      const std::string place = results->Claim(prefix + path.substr(stage.size() + 1), group);
+      fs::rename(path, place, error);
+      if (error) throw InputError(place + ": cannot be written: " + error.message());
+      path = place;
+    }
+  } catch (...) {
+    fs::remove_all(stage, error);
+    throw;
+  }
+  fs::remove_all(stage, error);
   return paths;
+}
+
+std::vector<std::string> ExportMap(const FourDMap& map, const std::string& map_path,
+                                   const std::string& folder, bool force, int* num_replaced) {
+  OutputFolder results(folder, {{map_path}, force});
+  std::error_code error;
+  if (results.IsListed("map.airdos") && !force && fs::exists(results.PathOf("map.airdos"), error) &&
+      !fs::equivalent(results.PathOf("map.airdos"), map_path, error)) {
+    throw InputError(folder +
+                     ": holds the results of a run with another map; choose another "
+                     "folder, or --force replaces its exports");
+  }
+  const OutputFolder::Selection of_exports = [](const std::string&, const std::string& group) {
+    return group == kExportGroup;
+  };
+  results.RequireReplaceable(ExportNames(folder, ""), of_exports);
+  const int num_removed = results.RemoveEarlier(of_exports);
+  if (num_replaced != nullptr) *num_replaced = num_removed;
+  return ExportMap(map, "", kExportGroup, &results);
 }
 
 }  // namespace airdos

@@ -7,10 +7,20 @@
 
 #include "common/geometry/se3.h"
 #include "common/map/four_d_map.h"
+#include "common/util/output_folder.h"
 
 namespace airdos {
 
-/// Writes everything below into a folder, which is made if it is not there:
+/// The lists' group of what an export into the folder itself writes; those of folders below it, as
+/// of a run's later sessions, belong to the run.
+inline constexpr char kExportGroup[] = "export";
+
+/// Names that an export may write, for OutputFolder::RequireReplaceable(): the fixed ones, and of
+/// the folder people/, if there is one, those that a track would have. `prefix` is "" or
+/// "session_2/".
+std::vector<std::string> ExportNames(const std::string& folder, const std::string& prefix);
+
+/// Writes everything below into a folder of results:
 /// - trajectory.tum: T_W_C as `t x y z qx qy qz qw` (s, m), refined where there is a refined pose;
 /// - trajectory_live.tum: T_W_C as estimated when each frame was the newest;
 /// - trajectory.kitti: the same poses in rows of 3 x 4, all of them; frames without a pose have no
@@ -23,8 +33,17 @@ namespace airdos {
 /// In files of times these go forward: poses whose time is not later than that of an image before
 /// are left out, and a comment in the first line says how many.
 ///
-/// Returns the paths. Throws InputError naming the file that cannot be written.
-std::vector<std::string> ExportMap(const FourDMap& map, const std::string& folder);
+/// It is written into a folder of its own first and then put into its places, so that none is ever
+/// half-written; files of an earlier export are the caller's to remove. Returns the paths. Throws
+/// InputError naming the file that cannot be written, or was not written by us and is in the way.
+std::vector<std::string> ExportMap(const FourDMap& map, const std::string& prefix,
+                                   const std::string& group, OutputFolder* results);
+
+/// The same into a folder that nobody holds; what an earlier export left there is removed.
+/// `map_path` is the file of the map: into a folder with the results of a run only the run's own
+/// map is exported. `num_replaced` may be null.
+std::vector<std::string> ExportMap(const FourDMap& map, const std::string& map_path,
+                                   const std::string& folder, bool force, int* num_replaced);
 
 /// T_W_H of a person: position is the mean of the neck and the middle of the hips (of what is known
 /// of the torso's five joints where one of these lacks); axes x to the person's right, y down along

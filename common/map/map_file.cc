@@ -13,6 +13,7 @@
 #include "common/map/byte_io.h"
 #include "common/util/check.h"
 #include "common/util/error.h"
+#include "common/util/input_file.h"
 
 namespace airdos {
 namespace {
@@ -133,6 +134,7 @@ void MapFileWriter::Append(const MapChunk& chunk) {
 
 MapFileSummary ReadMapFile(const std::string& path,
                            const std::function<void(const MapChunk&)>& handle) {
+  RequireRegularFile(path);
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path + ": cannot be read");
   const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file),

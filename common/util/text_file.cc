@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "common/util/error.h"
+#include "common/util/input_file.h"
 
 namespace airdos {
 namespace {
@@ -56,6 +57,7 @@ void CheckEncoding(const std::string& path, std::string* first_line) {
 }  // namespace
 
 std::vector<TextLine> ReadTextLines(const std::string& path, std::string* heading) {
+  RequireRegularFile(path);
   std::ifstream file(path);
   if (!file) throw InputError(path + ": cannot be read");
   std::vector<TextLine> lines;

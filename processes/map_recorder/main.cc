@@ -1,3 +1,6 @@
+#include <memory>
+#include <string>
+
 #include "processes/map_recorder/map_recorder_node.h"
 #include "processes/node/process_main.h"
 
@@ -6,7 +9,19 @@ int main(int argc, char** argv) {
   info.program = "airdos-map-recorder";
   info.config_name = "map_recorder";
   info.description = "Records trajectory, people and map into a crash-safe file";
-  info.make_node = airdos::MakeMapRecorderNode;
+  std::string run_dir;
+  const airdos::CommonArguments* common = nullptr;
+  info.add_options = [&](CLI::App* app, const airdos::CommonArguments& arguments) {
+    airdos::AddFolder("--run-dir", &run_dir, "folder of map and trajectories (output.directory)",
+                      app);
+    common = &arguments;
+  };
+  info.make_node = [&](airdos::ConfigReader* config) {
+    if (!run_dir.empty()) config->Override("output.directory=" + run_dir);
+    airdos::MapRecorderOptions options = airdos::ReadMapRecorderOptions(config);
+    options.rules.force = common->force;
+    return std::make_unique<airdos::MapRecorderNode>(options);
+  };
   info.publishes_frame_done = true;
   return airdos::RunNodeProcess(argc, argv, info);
 }

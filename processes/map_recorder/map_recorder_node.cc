@@ -8,14 +8,14 @@
 #include "common/util/error.h"
 #include "common/util/free_disk.h"
 #include "common/util/version.h"
+#include "processes/map_recorder/earlier_maps.h"
 
 namespace airdos {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kMapName[] = "/map.airdos";
-constexpr char kNotesName[] = "/map.airdos.open";
+constexpr char kGroup[] = "run";  // in the folder's list
 constexpr int kGroundTruthPerChunk = 10000;
 constexpr std::size_t kLargeChunkBytes = 8u << 20;  // then it does not wait for its last frame
 
@@ -71,78 +71,23 @@ MapFrame ToMapFrame(const state_estimate_t& message) {
   return frame;
 }
 
-void MakeDirectory(const std::string& directory) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) throw InputError(directory + ": cannot be made: " + error.message());
+const std::string& CheckedDirectory(const MapRecorderOptions& options) {
+  if (options.directory.empty()) {
+    throw InputError(
+        "--run-dir FOLDER is missing: where are map and trajectories to go? (It is "
+        "output.directory of the configuration)");
+  }
+  return options.directory;
 }
 
-/// The map of `session` that was not closed and ends before image `seq`, if one lies there.
-struct UnfinishedMap {
-  std::int64_t num_bytes = 0;
-  FourDMap notes;  // what lay beside it
-};
-std::optional<UnfinishedMap> FindUnfinishedMap(const std::string& directory, const Header& header) {
-  UnfinishedMap found;
-  try {
-    MapFileSummary summary;
-    const FourDMap map = ReadFourDMap(directory + kMapName, &summary);
-    const bool is_earlier = map.frames.empty() || map.frames.rbegin()->first.value < header.seq;
-    if (map.is_closed || map.session != header.session || !is_earlier) return std::nullopt;
-    found.num_bytes = summary.num_bytes_used;
-  } catch (const InputError&) {  // none, or none that can be read
-    return std::nullopt;
-  }
-  try {
-    MapFileSummary summary;
-    FourDMap notes = ReadFourDMap(directory + kNotesName, &summary);
-    if (notes.session == header.session) found.notes = std::move(notes);
-  } catch (const InputError&) {  // then they are lost
-  }
-  return found;
-}
-
-std::string SessionDirectory(const std::string& directory, int number) {
-  return number == 1 ? directory : directory + "/session_" + std::to_string(number);
-}
-
-/// Whether there is a file that is no closed map.
-bool IsUnfinished(const std::string& path) {
-  if (!fs::exists(path)) return false;
-  try {
-    MapFileSummary summary;
-    return !ReadFourDMap(path, &summary).is_closed;
-  } catch (const InputError&) {  // no map at all: it may be worth something to somebody
-    return true;
-  }
-}
-
-void KeepMap(const std::string& path) {
-  if (!fs::exists(path)) return;
-  const std::string ending = IsUnfinished(path) ? ".unfinished_" : ".closed_";
-  int number = 1;
-  while (fs::exists(path + ending + std::to_string(number))) ++number;
-  std::error_code error;
-  fs::rename(path, path + ending + std::to_string(number), error);
-  if (error) throw InputError(path + ": cannot be renamed: " + error.message());
-}
-
-/// A run that was cut short must not be lost to the next one in the same place: its maps, the
-/// closed ones of its earlier sessions, too, get other names.
-void KeepMapsOfACutRun(const std::string& directory) {
-  int num_sessions = 0;  // of that run, as far as it came
-  for (int number = 1; fs::exists(SessionDirectory(directory, number)); ++number) {
-    if (IsUnfinished(SessionDirectory(directory, number) + kMapName)) num_sessions = number;
-  }
-  for (int number = 1; number <= num_sessions; ++number) {
-    KeepMap(SessionDirectory(directory, number) + kMapName);
-  }
-}
+bool SelectAll(const std::string&, const std::string&) { return true; }
 
 }  // namespace
 
 MapRecorderNode::MapRecorderNode(const MapRecorderOptions& options)
-    : FrameNode("map_recorder"), options_(options) {
+    : FrameNode("map_recorder"),
+      options_(options),
+      results_(CheckedDirectory(options), options.rules) {
   Join(channel::kStateEstimate, &MapRecorderInputs::state);
   JoinParts(channel::kMapUpdate, &MapRecorderInputs::updates);
   Subscribe<pose_t>(channel::kGroundTruth,
@@ -150,10 +95,7 @@ MapRecorderNode::MapRecorderNode(const MapRecorderOptions& options)
   Subscribe<stereo_calibration_t>(channel::kCalibration, [this](stereo_calibration_t&& message) {
     return AddCalibration(message);
   });
-  MakeDirectory(options_.directory);
-  const std::string probe = options_.directory + "/.airdos_can_write";
-  { MapFileWriter writer(probe); }
-  fs::remove(probe);
+  results_.RequireReplaceable(NamesToBeWritten(options_.directory), SelectAll);
 }
 
 MapRecorderNode::~MapRecorderNode() {
@@ -180,17 +122,33 @@ void MapRecorderNode::StartSession(const Header& header) {
                      " is not recorded: there were " + std::to_string(kMaxSessions) + " before it");
   }
   ++num_sessions_;
+  prefix_ = SessionPrefix(num_sessions_);
   session_directory_ = SessionDirectory(options_.directory, num_sessions_);
   const bool is_first = num_sessions_ == 1;
   if (!is_first || !Resume(header)) {
-    if (is_first) KeepMapsOfACutRun(options_.directory);
-    if (IsUnfinished(session_directory_ + kMapName)) KeepMap(session_directory_ + kMapName);
-    MakeDirectory(session_directory_);
-    file_ = std::make_unique<MapFileWriter>(session_directory_ + kMapName);
+    if (is_first) ReplaceEarlierResults();
+    if (IsUnfinished(PathOf(kMapName))) KeepMap(PathOf(kMapName));
+    OpenMap(0);
+    num_live_ = 0;
     Append(HeadChunk(session_, std::string("airdos map_recorder ") + kVersion));
   }
   for (const auto& [seq, truth] : ground_truth_[session_]) not_noted_.insert(seq);
   NoteGroundTruth();
+}
+
+void MapRecorderNode::ReplaceEarlierResults() {
+  KeepMapsOfACutRun(options_.directory);
+  for (int number = 1; fs::exists(SessionDirectory(options_.directory, number)); ++number) {
+    SayWhatIsReplaced(SessionDirectory(options_.directory, number) + "/" + kMapName);
+  }
+  const std::string what = SayReplaced(results_.RemoveEarlier(SelectAll));
+  if (!what.empty()) Say(options_.directory + ": " + what);
+}
+
+void MapRecorderNode::OpenMap(std::int64_t num_bytes) {
+  const std::string path = results_.Claim(prefix_ + kMapName, kGroup);
+  file_ = num_bytes > 0 ? std::make_unique<MapFileWriter>(path, num_bytes)
+                        : std::make_unique<MapFileWriter>(path);
 }
 
 bool MapRecorderNode::Resume(const Header& header) {
@@ -204,8 +162,10 @@ bool MapRecorderNode::Resume(const Header& header) {
     found = FindUnfinishedMap(directory, header);
   }
   num_sessions_ = number;
+  prefix_ = SessionPrefix(number);
   session_directory_ = directory;
-  file_ = std::make_unique<MapFileWriter>(directory + kMapName, found->num_bytes);
+  OpenMap(found->num_bytes);
+  num_live_ = found->num_live;
   const FourDMap& notes = found->notes;
   for (const auto& [id, frame] : notes.frames) {
     if (!frame.ground_truth) continue;
@@ -234,7 +194,7 @@ void MapRecorderNode::NoteGroundTruth() {
   not_noted_.clear();
   try {
     if (notes_ == nullptr) {
-      notes_ = std::make_unique<MapFileWriter>(session_directory_ + kNotesName);
+      notes_ = std::make_unique<MapFileWriter>(results_.Claim(prefix_ + kNotesName, kGroup));
       notes_->Append(HeadChunk(session_, ""));
     }
     if (!changes.empty()) notes_->Append(changes.ToChunk());
@@ -249,6 +209,7 @@ void MapRecorderNode::ProcessFrame(const Header& header, MapRecorderInputs input
   if (has_pose) {
     changes_.SetFrame({header.seq}, ToMapFrame(*inputs.state));
     WatchTime(header);
+    ++num_live_;
   }
   for (const map_update_t& update : inputs.updates) {
     AddUpdate(update, &changes_);
@@ -353,23 +314,54 @@ void MapRecorderNode::CloseSession() {
   if (cameras != cameras_.end()) camera = cameras->second.begin()->second;
   cameras_.erase(session_);
   Append(EndChunk(camera, axes));
+  const std::int64_t num_bytes = file_->num_bytes();
   file_.reset();
   notes_.reset();
   not_noted_.clear();
   std::error_code ignored;
-  fs::remove(session_directory_ + kNotesName, ignored);
+  fs::remove(PathOf(kNotesName), ignored);
 
-  if (!options_.export_at_end) return;
   MapFileSummary summary;
-  ExportMap(ReadFourDMap(session_directory_ + kMapName, &summary), session_directory_);
+  const FourDMap map = ReadFourDMap(PathOf(kMapName), &summary);
+  CompareWithRecorded(map, summary, num_bytes);
+  if (options_.export_at_end) {
+    ExportMap(map, prefix_, prefix_.empty() ? kExportGroup : kGroup, &results_);
+    for (const std::string& name : ExportNames(options_.directory, prefix_)) {
+      if (results_.IsListed(name) || !fs::exists(results_.PathOf(name))) continue;
+      Say(results_.PathOf(name) + ": was there before and is not of this run");  // --force
+    }
+  }
+  results_.Finish();
 }
 
-std::unique_ptr<Node> MakeMapRecorderNode(ConfigReader* config) {
+void MapRecorderNode::CompareWithRecorded(const FourDMap& map, const MapFileSummary& summary,
+                                          std::int64_t num_bytes) const {
+  const std::size_t num_live = CountLive(map);
+  std::string difference;
+  if (!summary.drop_reason.empty() || summary.num_bytes_used != num_bytes) {
+    difference = std::to_string(summary.num_bytes_used) + " bytes of it can be read, " +
+                 std::to_string(num_bytes) + " were written";
+  } else if (num_live != num_live_) {
+    difference = "holds " + std::to_string(num_live) + " frames with a live pose, " +
+                 std::to_string(num_live_) + " were recorded";
+  } else if (map.session != session_ || !map.is_closed) {
+    difference = "is not the closed map of session " + std::to_string(session_);
+  }
+  if (difference.empty()) return;
+  throw InputError(PathOf(kMapName) + ": " + difference +
+                   "; did something else write into it? Record again");
+}
+
+MapRecorderOptions ReadMapRecorderOptions(ConfigReader* config) {
   MapRecorderOptions options;
   config->Read("output.directory", &options.directory);
   config->Read("output.chunk_frames", &options.chunk_frames, 1, 1000);
   config->Read("output.export_at_end", &options.export_at_end);
-  return std::make_unique<MapRecorderNode>(options);
+  return options;
+}
+
+std::unique_ptr<Node> MakeMapRecorderNode(ConfigReader* config) {
+  return std::make_unique<MapRecorderNode>(ReadMapRecorderOptions(config));
 }
 
 }  // namespace airdos

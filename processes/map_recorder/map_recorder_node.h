@@ -14,14 +14,16 @@
 #include "airdos/state_estimate_t.hpp"
 #include "common/config/config_reader.h"
 #include "common/map/four_d_map.h"
+#include "common/util/output_folder.h"
 #include "processes/node/frame_node.h"
 
 namespace airdos {
 
 struct MapRecorderOptions {
-  std::string directory = "airdos_map";  ///< made if it is not there
-  int chunk_frames = 10;                 ///< frames a chunk; a kill loses at most one chunk
-  bool export_at_end = true;             ///< also write the exports of common/map/map_export.h
+  std::string directory;      ///< made if it is not there; must be named
+  int chunk_frames = 10;      ///< frames a chunk; a kill loses at most one chunk
+  bool export_at_end = true;  ///< also write the exports of common/map/map_export.h
+  OutputRules rules;          ///< what may be replaced; not in the configuration
 };
 
 /// STATE_ESTIMATE and MAP_UPDATE of one frame.
@@ -42,7 +44,12 @@ struct MapRecorderInputs {
 /// live poses of the chunk that was open and of the frames until the restart; refined poses come
 /// again as long as the optimizer has them in its window. Else it is kept under another name
 /// (map.airdos.unfinished_1), and so are the maps of that run's earlier sessions
-/// (map.airdos.closed_1). The maps of a run that came to its end are replaced.
+/// (map.airdos.closed_1). The maps of a run that came to its end are replaced, and everything else
+/// that it left in the folder goes when the first frame comes; both are said on stderr. What was
+/// not written by a recorder, an export or a replay is never touched (see OutputFolder): where a
+/// file would get into its way, this is said before the first frame.
+///
+/// At its end each map is read again and held against what was recorded.
 ///
 /// Until a map is closed ground truth and calibration lie beside it in `map.airdos.open`, so that a
 /// kill loses at most kGroundTruthPerNote poses of them.
@@ -59,17 +66,21 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   /// Calibrations and ground truth of so many sessions wait for their first frame.
   static constexpr std::size_t kMaxSessionsAhead = 100;
 
-  /// Throws InputError where the directory cannot be made or written to.
+  /// Locks the folder until this goes. Throws InputError where it was not named, cannot be made or
+  /// written to, another run is writing there, or files of somebody else are in the way.
   explicit MapRecorderNode(const MapRecorderOptions& options);
   /// Closes the map if Finish() was not called; a failure is then said on stderr.
   ~MapRecorderNode() override;
 
   /// Writes the last chunks and the exports. Nothing where no frame came. Throws InputError naming
-  /// the file that cannot be written, or could not be earlier.
+  /// the file that cannot be written, or could not be earlier, or does not hold what was recorded.
   void Finish() override;
 
   /// Of the session in work; empty before the first frame.
   const std::string& session_directory() const { return session_directory_; }
+
+  /// For what else of this run is to lie in the folder.
+  OutputFolder* results() { return &results_; }
 
  protected:
   void StartSession(const Header& header) override;
@@ -97,8 +108,18 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   void Append(const MapChunk& chunk);
   void WriteChunk();
   void CloseSession();
+  /// Takes the folder over from an earlier run.
+  void ReplaceEarlierResults();
+  /// Opens the map of the session in work, at its end or where a kill left it.
+  void OpenMap(std::int64_t num_bytes);
+  /// Throws InputError where the map, as it was read, is not what was recorded.
+  void CompareWithRecorded(const FourDMap& map, const MapFileSummary& summary,
+                           std::int64_t num_bytes) const;
+  std::string PathOf(const std::string& name) const { return results_.PathOf(prefix_ + name); }
 
   MapRecorderOptions options_;
+  OutputFolder results_;
+  std::string prefix_;  // of the session's files in the folder: "" or "session_2/"
   std::string session_directory_;
   int num_sessions_ = 0;
   std::int64_t session_ = 0;
@@ -108,6 +129,7 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   bool is_time_said_ = false;
   MapDelta changes_;  // of the open chunk
   int num_frames_in_chunk_ = 0;
+  std::size_t num_live_ = 0;  // frames of the session in work with a live pose
 
   // By session, then image number.
   std::map<std::int64_t, std::map<std::int64_t, GroundTruth>> ground_truth_;
@@ -118,6 +140,7 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
 };
 
 /// Reads launch_scripts/config/map_recorder.yaml's keys; the caller calls Finish() of the reader.
+MapRecorderOptions ReadMapRecorderOptions(ConfigReader* config);
 std::unique_ptr<Node> MakeMapRecorderNode(ConfigReader* config);
 
 }  // namespace airdos

@@ -1,6 +1,7 @@
 #include "processes/node/event_log.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -184,8 +185,16 @@ std::optional<LogEvent> EventLogReader::ReadEvent() {
 }
 
 EventLogWriter::EventLogWriter(const std::string& path)
-    : path_(path), file_(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)) {
+    : path_(path), file_(open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644)) {
   if (file_ < 0) throw InputError(path + ": cannot be created: " + std::strerror(errno));
+  // Emptied only when nobody else writes it: two writers would leave a mixture.
+  struct stat status = {};
+  const bool is_file = fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
+  const bool is_taken = is_file && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (!is_taken && (!is_file || ftruncate(file_, 0) == 0)) return;
+  const std::string why = is_taken ? "another program is writing it" : std::strerror(errno);
+  close(file_);
+  throw InputError(path + ": cannot be written: " + why);
 }
 
 EventLogWriter::~EventLogWriter() { close(file_); }

@@ -93,7 +93,8 @@ class WriteError : public std::runtime_error {
 /// the process is killed.
 class EventLogWriter {
  public:
-  /// Replaces the file if there is one. Throws InputError if it cannot be created.
+  /// Replaces the file if there is one. Throws InputError if it cannot be created, or another
+  /// writer is at work on it.
   explicit EventLogWriter(const std::string& path);
   ~EventLogWriter();
   EventLogWriter(const EventLogWriter&) = delete;

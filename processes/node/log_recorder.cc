@@ -9,6 +9,7 @@
 #include "airdos/process_status_t.hpp"
 #include "common/util/error.h"
 #include "common/util/free_disk.h"
+#include "common/util/output_files.h"
 #include "common/util/version.h"
 #include "processes/node/channels.h"
 #include "processes/node/frame_joiner.h"
@@ -25,9 +26,10 @@ constexpr double kStatusPeriod_s = 1.0;
 
 // The writer replaces what is there.
 const std::string& CheckedPath(const LogRecorderOptions& options) {
-  if (!options.replaces_file && access(options.path.c_str(), F_OK) == 0) {
-    throw InputError(options.path + ": is there already, and --force was not given");
+  if (!options.replaces_file && StampOf(options.path)) {
+    throw InputError(options.path + ": is there already; --force replaces it");
   }
+  CheckOutputFile(options.path, {{}, options.replaces_file});
   return options.path;
 }
 

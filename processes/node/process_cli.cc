@@ -1,27 +1,15 @@
 #include "processes/node/process_cli.h"
 
 #include <algorithm>
-#include <exception>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 
 #include "common/util/error.h"
-#include "common/util/version.h"
+#include "common/util/output_files.h"
+#include "common/util/suggestion.h"
 #include "processes/node/lcm_transport.h"
 
 namespace airdos {
-namespace {
-
-int FailInOneLine(const CLI::App& app, std::string what, int exit_code) {
-  // The texts of libraries may have several lines.
-  while (!what.empty() && what.back() == '\n') what.pop_back();
-  std::replace(what.begin(), what.end(), '\n', ' ');
-  std::cerr << app.get_name() << ": " << what << std::endl;
-  return exit_code;
-}
-
-}  // namespace
 
 std::string ConfigFolder() {
   std::error_code ignored;
@@ -34,46 +22,80 @@ std::string ConfigFolder() {
 
 void AddCommonOptions(const std::string& config_name, CLI::App* app, CommonArguments* arguments) {
   arguments->lcm_url = DefaultLcmUrl();
+  arguments->config_name = config_name;
   arguments->config_file = ConfigFolder() + "/" + config_name + ".yaml";
   app->add_option("--lcm-url", arguments->lcm_url, "Where the other processes are (LCM URL)")
       ->capture_default_str();
-  app->add_option("--config", arguments->config_file, "YAML file with the options")
+  AddFile("--config", &arguments->config_file,
+          "YAML file with the options, or folder with " + config_name + ".yaml", app)
       ->capture_default_str();
-  app->add_option("--set", arguments->overrides, "section.key=value: replaces one value of it")
+  app->add_option("--set", arguments->overrides,
+                  "section.key=value: replaces one value of it (again for more); " + config_name +
+                      ": may stand before it, as for airdos-replay")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app->add_option("--resolved-config", arguments->resolved_config,
-                  "File to write all options to with the values in force");
-  app->set_version_flag("--version", std::string(kVersion));
+  AddFile("--resolved-config", &arguments->resolved_config,
+          "File to write all options to with the values in force", app);
+  AddForce(&arguments->force, app);
+}
+
+const std::vector<std::string>& ConfigNames() {
+  static const std::vector<std::string> names{"frontend", "human_tracker", "optimizer",
+                                              "map_recorder", "stereo_player"};
+  return names;
+}
+
+Assignment ParseAssignment(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw InputError("--set '" + text +
+                     "': is not of the form section.key=value or process:section.key=value");
+  }
+  const std::size_t colon = text.find(':');
+  if (colon > equals) return {"", text};
+  std::string process = text.substr(0, colon);
+  std::replace(process.begin(), process.end(), '-', '_');
+  const std::vector<std::string>& all = ConfigNames();
+  if (std::find(all.begin(), all.end(), process) == all.end()) {
+    const std::string hint = DidYouMean(process, all);
+    throw InputError("--set '" + text + "': there is no process '" + process + "'" +
+                     (hint.empty() ? "; there are frontend, human_tracker, optimizer, "
+                                     "map_recorder, stereo_player"
+                                   : hint));
+  }
+  return {process, text.substr(colon + 1)};
+}
+
+std::string ConfigFileOf(const std::string& path, const std::string& config_name) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(path, ignored)) return path;
+  return (std::filesystem::path(path) / (config_name + ".yaml")).string();
 }
 
 ConfigReader ReadConfig(const CommonArguments& arguments) {
-  ConfigReader config = ConfigReader::FromFile(arguments.config_file);
-  for (const std::string& assignment : arguments.overrides) config.Override(assignment);
+  ConfigReader config =
+      ConfigReader::FromFile(ConfigFileOf(arguments.config_file, arguments.config_name));
+  for (const std::string& text : arguments.overrides) {
+    const Assignment assignment = ParseAssignment(text);
+    if (!assignment.process.empty() && assignment.process != arguments.config_name) {
+      throw InputError("--set '" + text + "': is meant for " + assignment.process + ", this is " +
+                       arguments.config_name);
+    }
+    config.Override(assignment.text);
+  }
   return config;
 }
 
 void FinishConfig(const ConfigReader& config, const CommonArguments& arguments) {
   config.Finish();
   if (arguments.resolved_config.empty()) return;
+  const OutputFiles output(
+      {arguments.resolved_config},
+      {{ConfigFileOf(arguments.config_file, arguments.config_name)}, arguments.force});
   std::ofstream file(arguments.resolved_config);
   file << config.Resolved();
   file.close();
   if (!file) throw InputError(arguments.resolved_config + ": cannot be written");
-}
-
-int RunProgram(int argc, char** argv, CLI::App* app, const std::function<int()>& body) {
-  try {
-    app->parse(argc, argv);
-    return body();
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app->exit(error);  // --help, --version
-    return FailInOneLine(*app, error.what(), kExitBadInput);
-  } catch (const InputError& error) {
-    return FailInOneLine(*app, error.what(), kExitBadInput);
-  } catch (const std::exception& error) {
-    return FailInOneLine(*app, error.what(), 1);
-  }
 }
 
 }  // namespace airdos

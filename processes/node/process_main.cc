@@ -43,12 +43,13 @@ int RunNodeProcess(int argc, char** argv, const ProcessInfo& info) {
   std::string pace = "lockstep";
   app.add_option("--pace", pace, "lockstep: every frame is worked on; realtime: the newest one")
       ->capture_default_str()
-      ->check(CLI::IsMember({"lockstep", "realtime"}));
+      ->check(OneOf({"lockstep", "realtime"}));
   CLI::Option* deadline =
       app.add_option("--deadline-s", options.deadline_s,
                      "A frame that lacks inputs for longer is completed without (s); default " +
                          std::string("5 in lockstep, 0.2 in realtime"))
           ->check(CLI::Range(1e-3, 1e6));
+  if (info.add_options) info.add_options(&app, arguments);
   return RunProgram(argc, argv, &app, [&] {
     options.pace = pace == "lockstep" ? Pace::kLockstep : Pace::kRealtime;
     if (deadline->count() == 0) {

@@ -7,6 +7,7 @@
 
 #include "common/config/config_reader.h"
 #include "processes/node/node.h"
+#include "processes/node/process_cli.h"
 
 namespace airdos {
 
@@ -18,6 +19,8 @@ struct ProcessInfo {
   /// Reads the node's options; the caller calls Finish().
   std::function<std::unique_ptr<Node>(ConfigReader*)> make_node;
   bool publishes_frame_done = false;
+  /// Adds options of this process alone; may be empty. The arguments live as long as the process.
+  std::function<void(CLI::App*, const CommonArguments&)> add_options = nullptr;
 };
 
 /// The whole main of a process that is one node: options, node, LCM, until SIGINT, SIGTERM or

@@ -3,6 +3,7 @@
 #include <opencv2/core/utility.hpp>
 #include <utility>
 
+#include "common/util/output_files.h"
 #include "common/util/version.h"
 #include "processes/node/lcm_transport.h"
 #include "processes/node/log_source.h"
@@ -16,6 +17,7 @@ namespace {
 int Play(const airdos::PlayerOptions& options, const airdos::CommonArguments& common) {
   airdos::InstallStopSignals();
   cv::setNumThreads(1);
+  const airdos::OutputFiles outputs({options.write_log}, {{options.data}, common.force});
   const std::int64_t session = options.session.value_or(airdos::WallClock_us());
   // Opened before anything is said, so that a wrong path is.
   std::unique_ptr<airdos::FrameSource> first = airdos::OpenPlayerSource(options, session);

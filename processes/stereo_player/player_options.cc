@@ -34,10 +34,8 @@ std::vector<int> ToQualities(const std::string& text) {
 
 }  // namespace
 
-PlayerArguments::PlayerArguments(CLI::App* app) {
+PlayerArguments::PlayerArguments(CLI::App* app) : input_(app) {
   AddCommonOptions("stereo_player", app, &common_);
-  app->add_option("--data", options_.data,
-                  "Folder (TartanAir-Shibuya or KITTI odometry layout) or LCM log");
   app->add_option("--first", options_.first, "First frame")->check(CLI::NonNegativeNumber);
   app->add_option("--last", options_.last, "Last frame, included")->check(CLI::NonNegativeNumber);
   app->add_option("--session", options_.session,
@@ -52,7 +50,7 @@ PlayerArguments::PlayerArguments(CLI::App* app) {
       ->check(CLI::NonNegativeNumber);
   app->add_option("--pace", pace_, "lockstep: nothing is ever lost; realtime: like cameras")
       ->capture_default_str()
-      ->check(CLI::IsMember({"lockstep", "realtime"}));
+      ->check(OneOf({"lockstep", "realtime"}));
   app->add_option("--rate", options_.rate, "realtime: speed relative to the recording")
       ->capture_default_str()
       ->check(CLI::Range(1e-3, 1e3));
@@ -63,15 +61,15 @@ PlayerArguments::PlayerArguments(CLI::App* app) {
   app->add_option("--image-encoding", encoding_,
                   "auto: files that fit unchanged, else JPEG; png: lossless, whatever the size")
       ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "jpeg", "png"}));
-  app->add_option("--write-log", options_.write_log,
-                  "Write an LCM log of exactly these messages instead of publishing them");
+      ->check(OneOf({"auto", "jpeg", "png"}));
+  AddFile("--write-log", &options_.write_log,
+          "Write an LCM log of exactly these messages instead of publishing them", app);
 }
 
 PlayerOptions PlayerArguments::Resolve() const {
   using Encoding = ImagePackerOptions::Encoding;
   PlayerOptions options = options_;
-  if (options.data.empty()) throw InputError("--data FOLDER or LOG is missing");
+  options.data = input_.path();
   if (options.is_one_session && options.num_loops == 0)
     throw InputError("--one-session needs a --loop that ends");
   if (!options.write_log.empty() && options.num_loops != 1 && !options.is_one_session)

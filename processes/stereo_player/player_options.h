@@ -39,6 +39,7 @@ class PlayerArguments {
   const CommonArguments& common() const { return common_; }
 
  private:
+  InputOptions input_;
   CommonArguments common_;
   PlayerOptions options_;
   std::string pace_ = "lockstep";

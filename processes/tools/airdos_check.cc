@@ -7,19 +7,19 @@
 #include "common/check/check_folder.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
-#include "common/util/version.h"
+#include "common/util/output_files.h"
 #include "processes/node/check_log.h"
-#include "processes/node/process_cli.h"
+#include "processes/node/program_cli.h"
 
 int main(int argc, char** argv) {
   CLI::App app(
       "Says what is wrong with a recorded sequence or an LCM log before it is used: one line a "
       "finding. Exit code 0: it can be used; 1: there are errors; 2: wrong arguments.",
       "airdos-check");
-  std::string input;
   std::string json_path;
+  bool force = false;
   airdos::CheckOptions options;
-  app.add_option("INPUT", input, "folder of a sequence, or an LCM log")->required();
+  const airdos::InputOptions input_options(&app);
   app.add_option("--max-frames", options.max_frames, "pictures are looked at in so many frames")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
@@ -27,10 +27,12 @@ int main(int argc, char** argv) {
                  "frames of visual odometry to compare the ground truth with; 0: none")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
-  app.add_option("--json", json_path, "file to write the findings to");
-  app.set_version_flag("--version", std::string(airdos::kVersion));
+  airdos::AddFile("--json", &json_path, "file to write the findings to", &app);
+  airdos::AddForce(&force, &app);
 
   return airdos::RunProgram(argc, argv, &app, [&] {
+    const std::string& input = input_options.path();
+    const airdos::OutputFiles outputs({json_path}, {{input}, force});
     airdos::FindingList findings;
     if (std::filesystem::is_directory(input)) {
       airdos::CheckFolder(input, options, &findings);

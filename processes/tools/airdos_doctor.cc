@@ -5,9 +5,10 @@
 
 #include "common/util/error.h"
 #include "common/util/json_file.h"
+#include "common/util/output_files.h"
 #include "common/util/version.h"
 #include "processes/node/lcm_transport.h"
-#include "processes/node/process_cli.h"
+#include "processes/node/program_cli.h"
 #include "processes/node/types_fingerprint.h"
 #include "processes/tools/doctor_bus.h"
 #include "processes/tools/doctor_machine.h"
@@ -19,6 +20,7 @@ struct Arguments {
   std::string lcm_url = DefaultLcmUrl();
   std::string run_dir = ".";
   std::string json;
+  bool force = false;
   std::string round_trip = "auto";
   double listen_s = 1.3;  // STATUS comes once a second
   double round_trip_s = 2;
@@ -46,6 +48,7 @@ void ExamineBus(const Arguments& arguments, const MulticastUrl& url, Diagnoses* 
 
 int Run(const Arguments& arguments) {
   InstallStopSignals();
+  const OutputFiles outputs({arguments.json}, {{}, arguments.force});
   const MulticastUrl url = ParseMulticastUrl(arguments.lcm_url);
   Diagnoses result = JudgeRoute(url, FindRoute(url));
   // The same that LcmTransport asks for.
@@ -72,11 +75,11 @@ int main(int argc, char** argv) {
   airdos::Arguments arguments;
   app.add_option("--lcm-url", arguments.lcm_url, "where the processes are (LCM URL)")
       ->capture_default_str();
-  app.add_option("--run-dir", arguments.run_dir, "folder that results are to go to")
+  airdos::AddFolder("--run-dir", &arguments.run_dir, "folder that results are to go to", &app)
       ->capture_default_str();
   app.add_option("--round-trip", arguments.round_trip,
                  "send and receive test messages: auto (not into a run), always, never")
-      ->check(CLI::IsMember({"auto", "always", "never"}))
+      ->check(airdos::OneOf({"auto", "always", "never"}))
       ->capture_default_str();
   app.add_option("--listen-s", arguments.listen_s, "how long to listen to others (s)")
       ->check(CLI::Range(0.1, 3600.0))
@@ -84,7 +87,7 @@ int main(int argc, char** argv) {
   app.add_option("--round-trip-s", arguments.round_trip_s, "how long to send (s)")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
-  app.add_option("--json", arguments.json, "file to write the findings to");
-  app.set_version_flag("--version", std::string(airdos::kVersion));
+  airdos::AddFile("--json", &arguments.json, "file to write the findings to", &app);
+  airdos::AddForce(&arguments.force, &app);
   return airdos::RunProgram(argc, argv, &app, [&] { return airdos::Run(arguments); });
 }

@@ -2,13 +2,12 @@
 #include <CLI/CLI.hpp>
 #include <cinttypes>
 #include <cstdio>
-#include <exception>
 #include <string>
 
 #include "common/map/four_d_map.h"
 #include "common/map/map_export.h"
-#include "common/util/error.h"
-#include "common/util/version.h"
+#include "common/util/output_files.h"
+#include "processes/node/program_cli.h"
 #include "processes/tools/map_picture.h"
 
 namespace airdos {
@@ -57,58 +56,60 @@ void PrintInfo(const std::string& path) {
   std::printf("people        %zu tracks, %zu states\n", tracks.size(), map.humans.size());
 }
 
-void Export(const std::string& path, const std::string& folder) {
+void Export(const std::string& path, const std::string& folder, bool force) {
   MapFileSummary summary;
-  for (const std::string& file : ExportMap(ReadAndSayWhatIsLost(path, &summary), folder)) {
+  int num_replaced = 0;
+  for (const std::string& file :
+       ExportMap(ReadAndSayWhatIsLost(path, &summary), path, folder, force, &num_replaced)) {
     std::printf("%s\n", file.c_str());
   }
+  const std::string what = SayReplaced(num_replaced);
+  if (!what.empty()) std::fprintf(stderr, "airdos-map: %s: %s\n", folder.c_str(), what.c_str());
 }
 
-void Plot(const std::string& path, const std::string& picture) {
+void Plot(const std::string& path, const std::string& picture, bool force) {
+  const OutputFiles outputs({picture}, {{path}, force});
   MapFileSummary summary;
   WriteMapPicture(ReadAndSayWhatIsLost(path, &summary), picture);
   std::printf("%s\n", picture.c_str());
 }
 
+struct Arguments {
+  std::string input;
+  std::string out;
+  bool force = false;
+};
+
+CLI::App* AddCommand(const std::string& name, const std::string& text, Arguments* arguments,
+                     CLI::App* app) {
+  CLI::App* const command = app->add_subcommand(name, text);
+  AddFile("INPUT", &arguments->input, "map.airdos", command)->required();
+  return command;
+}
+
 int Run(int argc, char** argv) {
-  CLI::App app("What is in a 4-D map, and its exports");
-  app.set_version_flag("--version", kVersion);
+  CLI::App app("What is in a 4-D map, and its exports", "airdos-map");
   app.require_subcommand(1);
-  std::string file;
-  std::string folder;
-  CLI::App* const info = app.add_subcommand("info", "Print what a map holds");
-  info->add_option("FILE", file, "map.airdos")->required();
+  app.fallthrough();
+  Arguments arguments;
+  AddCommand("info", "Print what a map holds", &arguments, &app);
   CLI::App* const export_command =
-      app.add_subcommand("export", "Write trajectories, PLY and people of a map");
-  export_command->add_option("FILE", file, "map.airdos")->required();
-  export_command->add_option("--out", folder, "folder to write to")->required();
-  std::string picture;
+      AddCommand("export", "Write trajectories, PLY and people of a map", &arguments, &app);
+  AddFolder("--out", &arguments.out, "folder to write to", export_command)->required();
+  AddForce(&arguments.force, export_command);
   CLI::App* const plot_command =
-      app.add_subcommand("plot", "Draw a map from above: camera, people, static points");
-  plot_command->add_option("FILE", file, "map.airdos")->required();
-  plot_command->add_option("--out", picture, "PNG to write")->required();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitBadInput;
-  }
-  if (info->parsed()) PrintInfo(file);
-  if (export_command->parsed()) Export(file, folder);
-  if (plot_command->parsed()) Plot(file, picture);
-  return 0;
+      AddCommand("plot", "Draw a map from above: camera, people, static points", &arguments, &app);
+  AddFile("--out", &arguments.out, "PNG to write", plot_command)->required();
+  AddForce(&arguments.force, plot_command);
+  return RunProgram(argc, argv, &app, [&] {
+    if (app.got_subcommand("info")) PrintInfo(arguments.input);
+    if (export_command->parsed()) Export(arguments.input, arguments.out, arguments.force);
+    if (plot_command->parsed()) Plot(arguments.input, arguments.out, arguments.force);
+    return 0;
+  });
 }
 
 }  // namespace
 }  // namespace airdos
 
-int main(int argc, char** argv) {
-  try {
-    return airdos::Run(argc, argv);
-  } catch (const airdos::InputError& error) {
-    std::fprintf(stderr, "airdos-map: %s\n", error.what());
-    return airdos::kExitBadInput;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "airdos-map: %s\n", error.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return airdos::Run(argc, argv); }

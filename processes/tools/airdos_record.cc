@@ -1,10 +1,10 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "common/util/version.h"
+#include "common/util/output_files.h"
 #include "processes/node/lcm_transport.h"
 #include "processes/node/log_recorder.h"
-#include "processes/node/process_cli.h"
+#include "processes/node/program_cli.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Records what is said on LCM into an event log, without losing anything.",
@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
   airdos::LogRecorderOptions options;
   std::string lcm_url = airdos::DefaultLcmUrl();
   app.add_option("--lcm-url", lcm_url, "where the processes are (LCM URL)")->capture_default_str();
-  app.add_option("--out", options.path, "log to write; lcm-logplayer and airdos-replay read it")
+  airdos::AddFile("--out", &options.path, "log to write; lcm-logplayer and airdos-replay read it",
+                  &app)
       ->required();
   app.add_option("--channels", options.channels, "regular expression of the channels")
       ->capture_default_str();
@@ -22,8 +23,8 @@ int main(int argc, char** argv) {
   app.add_option("--flush-s", options.flush_s, "the disk is told to keep what came this often (s)")
       ->check(CLI::Range(0.01, 1e6))
       ->capture_default_str();
+  // A recording cannot be made again: it is never marked as one that may be replaced.
   app.add_flag("--force", options.replaces_file, "replace the log if there is one");
-  app.set_version_flag("--version", std::string(airdos::kVersion));
 
   return airdos::RunProgram(argc, argv, &app, [&] {
     airdos::InstallStopSignals();

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "common/simulation/settings.h"
-#include "common/util/version.h"
-#include "processes/node/process_cli.h"
+#include "common/util/output_files.h"
+#include "processes/node/program_cli.h"
 #include "processes/tools/simulated_log.h"
 
 int main(int argc, char** argv) {
@@ -17,14 +17,16 @@ int main(int argc, char** argv) {
   std::string setting = "walkers8";
   std::uint64_t seed = 1;
   std::string out;
+  bool force = false;
   app.add_option("--setting", setting, "what is simulated")
-      ->check(CLI::IsMember(airdos::SettingNames()))
+      ->check(airdos::OneOf(airdos::SettingNames()))
       ->capture_default_str();
   app.add_option("--seed", seed, "of the random numbers")->capture_default_str();
-  app.add_option("--out", out, "log to write")->required();
-  app.set_version_flag("--version", std::string(airdos::kVersion));
+  airdos::AddFile("--out", &out, "log to write", &app)->required();
+  airdos::AddForce(&force, &app);
 
   return airdos::RunProgram(argc, argv, &app, [&] {
+    const airdos::OutputFiles outputs({out}, {{}, force});
     const airdos::SimulatedSequence sequence =
         airdos::Simulate(airdos::SettingByName(setting, seed));
     airdos::WriteSimulatedLog(sequence, out);

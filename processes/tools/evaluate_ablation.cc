@@ -8,6 +8,7 @@
 
 #include "common/simulation/settings.h"
 #include "common/util/json_file.h"
+#include "common/util/output_files.h"
 #include "processes/tools/ablation.h"
 #include "processes/tools/ablation_report.h"
 #include "processes/tools/do_no_harm.h"
@@ -22,9 +23,11 @@ struct AblationArguments {
   int num_sequences = 0;
   std::uint64_t seed = 1;
   std::string json;
+  bool force = false;
 };
 
 void RunAblationCommand(AblationArguments arguments) {
+  const OutputFiles outputs({arguments.json}, {{}, arguments.force});
   const bool do_no_harm = arguments.do_no_harm;
   if (arguments.groups.empty()) arguments.groups = do_no_harm ? SettingNames() : PaperGroups();
   if (arguments.num_sequences == 0) arguments.num_sequences = do_no_harm ? 100 : 10;
@@ -59,7 +62,7 @@ void AddAblationCommand(CLI::App* app) {
   command
       ->add_option("--groups", arguments->groups,
                    "settings of the simulator (default: the paper's four groups)")
-      ->check(CLI::IsMember(SettingNames()));
+      ->check(OneOf(SettingNames()));
   command->add_flag("--do-no-harm", arguments->do_no_harm,
                     "instead: how people change the camera's errors, in every setting");
   command
@@ -68,7 +71,8 @@ void AddAblationCommand(CLI::App* app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--seed", arguments->seed, "of each group's first sequence")
       ->capture_default_str();
-  command->add_option("--json", arguments->json, "file to write all figures to");
+  AddFile("--json", &arguments->json, "file to write all figures to", command);
+  AddForce(&arguments->force, command);
   command->callback([arguments] { RunAblationCommand(*arguments); });
 }
 

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/evaluation/trajectory.h"
+#include "processes/node/program_cli.h"
 
 namespace airdos {
 

@@ -10,6 +10,7 @@
 #include "common/evaluation/trajectory_plot.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
+#include "common/util/output_files.h"
 #include "processes/tools/evaluate_command.h"
 
 namespace airdos {
@@ -19,9 +20,11 @@ struct CurveArguments {
   std::string runs;
   std::string json;
   std::string plot;
+  bool force = false;
 };
 
 void RunCurve(const CurveArguments& arguments) {
+  const OutputFiles outputs({arguments.json, arguments.plot}, {{arguments.runs}, arguments.force});
   std::vector<CappedRun> runs = ReadCappedRuns(arguments.runs);
   HelpCurve curve;
   try {
@@ -40,12 +43,12 @@ void AddCurveCommand(CLI::App* app) {
   const auto arguments = std::make_shared<CurveArguments>();
   CLI::App* const command = app->add_subcommand(
       "curve", "When people help: errors against the number of static features");
-  command
-      ->add_option("--runs", arguments->runs,
-                   "JSON lines as launch_scripts/benchmark_people_help.sh writes them, one a run")
+  AddFile("--runs", &arguments->runs,
+          "JSON lines as launch_scripts/benchmark_people_help.sh writes them, one a run", command)
       ->required();
-  command->add_option("--json", arguments->json, "file to write all figures to");
-  command->add_option("--plot", arguments->plot, "PNG file to draw the curve into");
+  AddFile("--json", &arguments->json, "file to write all figures to", command);
+  AddFile("--plot", &arguments->plot, "PNG file to draw the curve into", command);
+  AddForce(&arguments->force, command);
   command->callback([arguments] { RunCurve(*arguments); });
 }
 

@@ -7,6 +7,7 @@
 #include "common/evaluation/trajectory_report.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
+#include "common/util/output_files.h"
 #include "processes/tools/evaluate_command.h"
 
 namespace airdos {
@@ -18,6 +19,7 @@ struct PeopleArguments {
   std::string estimate;
   std::string ground_truth;
   std::string json;
+  bool force = false;
 };
 
 /// The poses of the camera that belong together. The truth must be in optical axes.
@@ -37,6 +39,9 @@ TrajectoryReport CompareCameras(const PeopleArguments& arguments) {
 }
 
 void RunPeople(const PeopleArguments& arguments) {
+  const OutputFiles outputs({arguments.json}, {{arguments.people, arguments.joints,
+                                                arguments.estimate, arguments.ground_truth},
+                                               arguments.force});
   const TrajectoryReport cameras = CompareCameras(arguments);
   const PeopleReport report = EvaluatePeople(ReadPeople(arguments.people),
                                              ReadTruePeople(arguments.joints), cameras.matched);
@@ -56,16 +61,16 @@ void AddPeopleCommand(CLI::App* app) {
   const auto arguments = std::make_shared<PeopleArguments>();
   CLI::App* const command =
       app->add_subcommand("people", "Errors of people: joints, identities, lengths of segments");
-  command->add_option("--people", arguments->people, "people.jsonl of a map")->required();
-  command->add_option("--joints", arguments->joints, "true joints: joints_gt.json, or its .gz")
+  AddFile("--people", &arguments->people, "people.jsonl of a map", command)->required();
+  AddFile("--joints", &arguments->joints, "true joints: joints_gt.json, or its .gz", command)
       ->required();
-  command->add_option("--estimate", arguments->estimate, "trajectory.tum of the same map")
+  AddFile("--estimate", &arguments->estimate, "trajectory.tum of the same map", command)
       ->required();
-  command
-      ->add_option("--ground-truth", arguments->ground_truth,
-                   "TUM file of the true camera, optical axes, in the world of the true joints")
+  AddFile("--ground-truth", &arguments->ground_truth,
+          "TUM file of the true camera, optical axes, in the world of the true joints", command)
       ->required();
-  command->add_option("--json", arguments->json, "file to write all figures to");
+  AddFile("--json", &arguments->json, "file to write all figures to", command);
+  AddForce(&arguments->force, command);
   command->callback([arguments] { RunPeople(*arguments); });
 }
 

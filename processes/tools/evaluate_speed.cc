@@ -8,6 +8,7 @@
 #include "common/evaluation/trajectory_plot.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
+#include "common/util/output_files.h"
 #include "processes/tools/evaluate_command.h"
 
 namespace airdos {
@@ -18,9 +19,12 @@ struct SpeedArguments {
   std::string solver;
   std::string json;
   std::string plot;
+  bool force = false;
 };
 
 void RunSpeed(const SpeedArguments& arguments) {
+  const OutputFiles outputs({arguments.json, arguments.plot},
+                            {{arguments.runs, arguments.solver}, arguments.force});
   std::vector<ChainSpeed> chains;
   std::vector<SolveTime> solves;
   if (!arguments.runs.empty()) chains = ReadChainSpeeds(arguments.runs);
@@ -36,12 +40,12 @@ void RunSpeed(const SpeedArguments& arguments) {
 void AddSpeedCommand(CLI::App* app) {
   const auto arguments = std::make_shared<SpeedArguments>();
   CLI::App* const command = app->add_subcommand("speed", "How fast the chain and its solver are");
-  command->add_option(
-      "--runs", arguments->runs,
-      "JSON lines as launch_scripts/benchmark_speed.sh writes them, one a sequence");
-  command->add_option("--solver", arguments->solver, "JSON of airdos_solver_benchmark");
-  command->add_option("--json", arguments->json, "file to write all figures to");
-  command->add_option("--plot", arguments->plot, "PNG file to draw how they grow into");
+  AddFile("--runs", &arguments->runs,
+          "JSON lines as launch_scripts/benchmark_speed.sh writes them, one a sequence", command);
+  AddFile("--solver", &arguments->solver, "JSON of airdos_solver_benchmark", command);
+  AddFile("--json", &arguments->json, "file to write all figures to", command);
+  AddFile("--plot", &arguments->plot, "PNG file to draw how they grow into", command);
+  AddForce(&arguments->force, command);
   command->callback([arguments] { RunSpeed(*arguments); });
 }
 

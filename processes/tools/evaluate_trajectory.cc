@@ -6,6 +6,7 @@
 #include "common/evaluation/trajectory_plot.h"
 #include "common/evaluation/trajectory_report.h"
 #include "common/util/json_file.h"
+#include "common/util/output_files.h"
 #include "processes/tools/evaluate_command.h"
 
 namespace airdos {
@@ -21,9 +22,13 @@ struct TrajectoryArguments {
   std::size_t num_frames = 0;
   std::string json;
   std::string plot;
+  bool force = false;
 };
 
 void RunTrajectory(const TrajectoryArguments& arguments) {
+  const OutputFiles outputs(
+      {arguments.json, arguments.plot},
+      {{arguments.estimate, arguments.ground_truth, arguments.times}, arguments.force});
   Trajectory estimate = ReadTrajectory(arguments.estimate);
   Trajectory ground_truth = ReadTrajectory(arguments.ground_truth);
   if (!arguments.times.empty()) SetTimesOfPair(arguments.times, &estimate, &ground_truth);
@@ -58,14 +63,13 @@ void SayWarnings(const Remarks& remarks) {
 void AddTrajectoryCommand(CLI::App* app) {
   const auto arguments = std::make_shared<TrajectoryArguments>();
   CLI::App* const command = app->add_subcommand("trajectory", "Errors of a camera trajectory");
-  command
-      ->add_option("--estimate", arguments->estimate,
-                   "trajectory in optical axes: TUM, KITTI, EuRoC csv or TartanAir")
+  AddFile("--estimate", &arguments->estimate,
+          "trajectory in optical axes: TUM, KITTI, EuRoC csv or TartanAir", command)
       ->required();
-  command->add_option("--ground-truth", arguments->ground_truth, "true trajectory, likewise")
+  AddFile("--ground-truth", &arguments->ground_truth, "true trajectory, likewise", command)
       ->required();
-  command->add_option("--times", arguments->times,
-                      "times of the rows of a file without times (KITTI), one a line for each row");
+  AddFile("--times", &arguments->times,
+          "times of the rows of a file without times (KITTI), one a line for each row", command);
   command
       ->add_option(
           "--gt-axes", arguments->axes,
@@ -87,8 +91,9 @@ void AddTrajectoryCommand(CLI::App* app) {
   command->add_option("--frames", arguments->num_frames,
                       "images of the sequence, for the completeness (default: as many as the "
                       "ground truth has rows, or the estimate if the truth has a higher rate)");
-  command->add_option("--json", arguments->json, "file to write all figures to");
-  command->add_option("--plot", arguments->plot, "PNG file to draw trajectories and errors into");
+  AddFile("--json", &arguments->json, "file to write all figures to", command);
+  AddFile("--plot", &arguments->plot, "PNG file to draw trajectories and errors into", command);
+  AddForce(&arguments->force, command);
   command->callback([arguments] { RunTrajectory(*arguments); });
 }
 

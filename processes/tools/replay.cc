@@ -15,6 +15,7 @@
 #include "common/util/digest.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
+#include "common/util/output_files.h"
 #include "processes/node/channels.h"
 #include "processes/node/codec.h"
 #include "processes/node/fifo_bus.h"
@@ -197,7 +198,8 @@ ReplayResult Replay(FrameSource* source, const std::vector<ReplayNode>& nodes,
   for (const ReplayNode& entry : nodes) entry.node->Finish();
 
   archive.Fill(&result);
-  if (!options.out_path.empty()) result.log_sha256 = FileSha256(options.out_path);
+  // What went into a pipe or a device cannot be read again.
+  if (StampOf(options.out_path)) result.log_sha256 = FileSha256(options.out_path);
   result.timing = stopwatch.TakeTiming();
   for (const ReplayNode& entry : nodes) AddRemarks(*entry.node, &result.remarks);
   return result;

@@ -13,20 +13,27 @@
 
 #include "common/config/config_reader.h"
 #include "common/util/error.h"
+#include "common/util/input_file.h"
+#include "common/util/output_folder.h"
+#include "common/util/suggestion.h"
 #include "processes/frontend/frontend_node.h"
 #include "processes/human_tracker/human_tracker_node.h"
 #include "processes/map_recorder/map_recorder_node.h"
 #include "processes/node/channels.h"
+#include "processes/node/process_cli.h"
 #include "processes/optimizer/optimizer_node.h"
 #include "processes/stereo_player/dataset_source.h"
 
 namespace airdos {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::int64_t kSession = 1;  // of data sets: always the same, so that runs compare
 
 struct Process {
   std::string name;  // of its configuration file and in overrides
+  // None of the map recorder, which is made last.
   std::function<std::unique_ptr<Node>(ConfigReader*)> make_node;
   std::vector<std::string> publishes;
 };
@@ -36,26 +43,59 @@ const std::vector<Process>& Processes() {
       {"frontend", MakeFrontendNode, {channel::kStaticFeatures}},
       {"human_tracker", MakeHumanTrackerNode, {channel::kHumanObservations}},
       {"optimizer", MakeOptimizerNode, {channel::kStateEstimate, channel::kMapUpdate}},
-      {"map_recorder", MakeMapRecorderNode, {}}};
+      {"map_recorder", nullptr, {}}};
   return processes;
 }
 
+using Configs = std::map<std::string, ConfigReader>;                  // by process
 using Assignments = std::map<std::string, std::vector<std::string>>;  // by process, in order
 
-void AddOverride(const std::string& text, Assignments* assignments) {
-  const std::size_t colon = text.find(':');
-  const std::string process = text.substr(0, colon);
-  const auto& all = Processes();
-  const bool is_known = std::any_of(all.begin(), all.end(),
-                                    [&](const Process& known) { return known.name == process; });
-  if (colon == std::string::npos || !is_known) {
-    throw InputError("--set '" + text + "': is not of the form process:section.key=value" +
-                     " with frontend, human_tracker, optimizer or map_recorder as process");
-  }
-  (*assignments)[process].push_back(text.substr(colon + 1));
+std::string ConfigPath(const ReplaySetup& setup, const std::string& process) {
+  const fs::path file = setup.config_file;
+  if (file.stem() == process) return file.string();
+  return setup.config_dir + "/" + process + ".yaml";
 }
 
-Assignments AssignmentsOf(const ReplaySetup& setup) {
+Configs ReadConfigs(const ReplaySetup& setup) {
+  Configs configs;
+  for (const Process& process : Processes()) {
+    configs.emplace(process.name, ConfigReader::FromFile(ConfigPath(setup, process.name)));
+  }
+  return configs;
+}
+
+/// The one process whose configuration has the key of "section.key=value".
+std::string OwnerOf(const std::string& text, const Configs& configs) {
+  const std::string key = text.substr(0, text.find('='));
+  std::string owner;
+  std::vector<std::string> all_keys;
+  for (const auto& [process, config] : configs) {
+    for (const std::string& known : config.Keys()) all_keys.push_back(known);
+    if (!config.Has(key)) continue;
+    if (!owner.empty()) {
+      throw InputError("--set '" + text + "': more than one process has this key; say " + owner +
+                       ":" + key + " or " + process + ":" + key);
+    }
+    owner = process;
+  }
+  if (owner.empty()) {
+    throw InputError("--set '" + text + "': no process has the key '" + key + "'" +
+                     DidYouMean(key, all_keys));
+  }
+  return owner;
+}
+
+void AddOverride(const std::string& text, const Configs& configs, Assignments* assignments) {
+  const Assignment assignment = ParseAssignment(text);
+  const std::string process =
+      assignment.process.empty() ? OwnerOf(text, configs) : assignment.process;
+  if (configs.count(process) == 0) {
+    throw InputError("--set '" + text + "': " + process + " is no part of a replay");
+  }
+  (*assignments)[process].push_back(assignment.text);
+}
+
+Assignments AssignmentsOf(const ReplaySetup& setup, const Configs& configs) {
   Assignments assignments;
   std::string masks = setup.masks;
   if (!setup.people.empty()) {
@@ -68,9 +108,9 @@ Assignments AssignmentsOf(const ReplaySetup& setup) {
     assignments["frontend"].push_back(std::string("masks.use=") +
                                       (masks == "on" ? "true" : "false"));
   }
-  if (!setup.run_dir.empty())
-    assignments["map_recorder"].push_back("output.directory=" + setup.run_dir);
-  for (const std::string& text : setup.overrides) AddOverride(text, &assignments);
+  // Not what a configuration says: that of an earlier run names its folder.
+  assignments["map_recorder"].push_back("output.directory=" + setup.run_dir);
+  for (const std::string& text : setup.overrides) AddOverride(text, configs, &assignments);
   return assignments;
 }
 
@@ -81,27 +121,97 @@ void WriteText(const std::string& path, const std::string& text) {
   if (!file) throw InputError(path + ": cannot be written");
 }
 
+/// The name of the file within the folder; empty if it lies elsewhere.
+std::string NameWithin(const std::string& folder, const std::string& path) {
+  std::error_code error;
+  const fs::path name = fs::weakly_canonical(fs::absolute(path, error), error)
+                            .lexically_relative(fs::weakly_canonical(fs::absolute(folder, error)));
+  const bool is_within = !name.empty() && *name.begin() != ".." && *name.begin() != ".";
+  return is_within ? name.string() : "";
+}
+
+/// Refuses what must not be written before anything is: no two files of one name, none in the way.
+void ClaimOutputs(const std::vector<std::string>& names, OutputFolder* results) {
+  results->RequireReplaceable(names, [](const std::string&, const std::string&) { return false; });
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
+        names.begin() + static_cast<std::ptrdiff_t>(i)) {
+      throw InputError(results->PathOf(names[i]) +
+                       ": is to be written twice; give each output a name of its own");
+    }
+  }
+  for (const std::string& name : names) results->Claim(name, "run");
+}
+
 }  // namespace
 
-std::vector<ReplayNode> MakeReplayNodes(const ReplaySetup& setup) {
-  Assignments assignments = AssignmentsOf(setup);
-  if (!setup.run_dir.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories(setup.run_dir, error);
-    if (error) throw InputError(setup.run_dir + ": cannot be created: " + error.message());
+void SetConfig(const std::string& path, ReplaySetup* setup) {
+  if (fs::is_directory(path)) {
+    setup->config_dir = path;
+    return;
   }
-  std::vector<ReplayNode> nodes;
+  RequireRegularFile(path);
+  std::vector<std::string> names;
+  for (const Process& process : Processes()) names.push_back(process.name);
+  const std::string stem = fs::path(path).stem().string();
+  if (std::find(names.begin(), names.end(), stem) == names.end()) {
+    const std::string hint = DidYouMean(stem, names);
+    throw InputError("--config " + path +
+                     ": the name does not say of which process it is: frontend.yaml, "
+                     "human_tracker.yaml, optimizer.yaml or map_recorder.yaml" +
+                     hint);
+  }
+  setup->config_file = path;
+}
+
+ReplayNodes PrepareReplay(const ReplaySetup& setup) {
+  Configs configs = ReadConfigs(setup);
+  for (const auto& [process, assignments] : AssignmentsOf(setup, configs)) {
+    for (const std::string& assignment : assignments) configs.at(process).Override(assignment);
+  }
+  ReplayNodes result;
   for (const Process& process : Processes()) {
     const bool makes_features = process.name == "frontend" || process.name == "human_tracker";
-    if (setup.from_features && makes_features) continue;
-    ConfigReader config = ConfigReader::FromFile(setup.config_dir + "/" + process.name + ".yaml");
-    for (const std::string& assignment : assignments[process.name]) config.Override(assignment);
-    nodes.push_back({process.make_node(&config), process.publishes});
+    if (process.make_node == nullptr || (setup.from_features && makes_features)) continue;
+    ConfigReader& config = configs.at(process.name);
+    result.nodes.push_back({process.make_node(&config), process.publishes});
     config.Finish();
-    if (!setup.run_dir.empty())
-      WriteText(setup.run_dir + "/" + process.name + ".yaml", config.Resolved());
   }
-  return nodes;
+  MapRecorderOptions recording = ReadMapRecorderOptions(&configs.at("map_recorder"));
+  configs.at("map_recorder").Finish();
+  recording.rules = setup.rules;
+  for (const Process& process : Processes()) {
+    recording.rules.inputs.push_back(ConfigPath(setup, process.name));
+  }
+  if (recording.directory.empty()) {
+    result.outputs = std::make_unique<OutputFiles>(setup.outputs, recording.rules);
+    return result;
+  }
+  auto recorder = std::make_unique<MapRecorderNode>(recording);
+  std::vector<std::string> outside, within;
+  for (const std::string& path : setup.outputs) {
+    if (path.empty()) continue;
+    const std::string name = NameWithin(recording.directory, path);
+    (name.empty() ? outside : within).push_back(name.empty() ? path : name);
+  }
+  result.outputs = std::make_unique<OutputFiles>(outside, recording.rules);
+  std::vector<std::string> configurations;
+  for (const Process& process : Processes()) {
+    const bool is_run =
+        process.make_node == nullptr || !setup.from_features || process.name == "optimizer";
+    if (is_run && !setup.run_dir.empty()) configurations.push_back(process.name);
+  }
+  for (const std::string& process : configurations) within.push_back(process + ".yaml");
+  ClaimOutputs(within, recorder->results());
+  for (const std::string& process : configurations) {
+    WriteText(recorder->results()->PathOf(process + ".yaml"), configs.at(process).Resolved());
+  }
+  result.nodes.push_back({std::move(recorder), {}});
+  return result;
+}
+
+std::vector<ReplayNode> MakeReplayNodes(const ReplaySetup& setup) {
+  return std::move(PrepareReplay(setup).nodes);
 }
 
 std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, std::int64_t first,

@@ -117,7 +117,7 @@ void RunMapFile(const std::uint8_t* data, std::size_t size) {
               "a map gave more than it holds");
     const std::string folder = FuzzFolder::Path() + "/export";
     std::filesystem::create_directories(folder);
-    ExportMap(map, folder);
+    ExportMap(map, path, folder, false, nullptr);
     std::filesystem::remove_all(folder);
   } catch (const InputError&) {
   }

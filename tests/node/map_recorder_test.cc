@@ -135,6 +135,17 @@ class MapRecorderTest : public ::testing::Test {
     while (node->CompleteOldest()) {
     }
   }
+  /// What a recorder that works in the folder would leave behind if it was killed now.
+  void KillNow(const std::string& name, const std::string& left_behind) const {
+    const fs::path from = fs::path(folder_) / name;
+    const fs::path to = fs::path(folder_) / left_behind;
+    fs::remove_all(to);
+    fs::copy(from, to, fs::copy_options::recursive);
+    for (const auto& entry : fs::recursive_directory_iterator(to)) {
+      if (!entry.is_regular_file()) continue;
+      fs::last_write_time(entry, fs::last_write_time(from / fs::relative(entry, to)));
+    }
+  }
   static FourDMap Read(const std::string& directory) {
     MapFileSummary summary;
     return ReadFourDMap(directory + "/map.airdos", &summary);
@@ -249,17 +260,16 @@ TEST_F(MapRecorderTest, KeepsAMapThatWasNotClosed) {
   {
     MapRecorderNode node(Options("a"));
     Feed(Recording(10), &node);
-    fs::copy(folder_ + "/a/map.airdos", folder_ + "/killed");
+    KillNow("a", "b");
   }
-  fs::rename(folder_ + "/killed", folder_ + "/a/map.airdos");
   for (int run = 0; run < 2; ++run) {  // the second finds a closed map and replaces it
-    MapRecorderNode node(Options("a"));
+    MapRecorderNode node(Options("b"));
     Feed(Recording(3), &node);
   }
-  EXPECT_EQ(Read(folder_ + "/a").frames.size(), 3u);
+  EXPECT_EQ(Read(folder_ + "/b").frames.size(), 3u);
   MapFileSummary summary;
-  EXPECT_EQ(ReadFourDMap(folder_ + "/a/map.airdos.unfinished_1", &summary).frames.size(), 8u);
-  EXPECT_FALSE(fs::exists(folder_ + "/a/map.airdos.unfinished_2"));
+  EXPECT_EQ(ReadFourDMap(folder_ + "/b/map.airdos.unfinished_1", &summary).frames.size(), 8u);
+  EXPECT_FALSE(fs::exists(folder_ + "/b/map.airdos.unfinished_2"));
 }
 
 TEST_F(MapRecorderTest, GoesOnWithTheMapOfARecorderThatWasKilled) {
@@ -277,23 +287,20 @@ TEST_F(MapRecorderTest, GoesOnWithTheMapOfARecorderThatWasKilled) {
     }
     return some;
   };
-  const std::string map_path = folder_ + "/a/map.airdos";
+  const std::string map_path = folder_ + "/b/map.airdos";
   {
     MapRecorderNode killed(Options("a"));
     Feed(of(0, 13), &killed);  // three chunks of four, two frames in the open one
-    fs::copy(map_path, folder_ + "/killed");
-    fs::copy(map_path + ".open", folder_ + "/killed.open");
+    KillNow("a", "b");
   }
-  fs::rename(folder_ + "/killed", map_path);
-  fs::rename(folder_ + "/killed.open", map_path + ".open");
   std::ofstream(map_path, std::ios::app) << "half a chunk";
   {
-    MapRecorderNode node(Options("a"));
+    MapRecorderNode node(Options("b"));
     Feed(of(16, 29), &node);
     CompleteAll(&node);
     node.Finish();
   }
-  const FourDMap map = Read(folder_ + "/a");
+  const FourDMap map = Read(folder_ + "/b");
   EXPECT_TRUE(map.is_closed);
   EXPECT_TRUE(map.camera) << "heard by the one that was killed";
   EXPECT_EQ(map.ground_truth_axes, +pose_t::AXES_NED);
@@ -327,8 +334,8 @@ TEST_F(MapRecorderTest, AnotherSessionGoesToItsOwnFolder) {
 // Killed in the second session: whoever goes on with it finds it, and whoever does not leaves both
 // maps alone.
 TEST_F(MapRecorderTest, AKillInTheSecondSessionCostsNoMapOfTheFirst) {
-  const std::string first = folder_ + "/a/map.airdos";
-  const std::string second = folder_ + "/a/session_2/map.airdos";
+  const std::string first = folder_ + "/c/map.airdos";
+  const std::string second = folder_ + "/c/session_2/map.airdos";
   const auto session_43 = [](std::int64_t first_seq, std::int64_t last_seq) {
     std::vector<Envelope> messages;
     for (std::int64_t seq = first_seq; seq <= last_seq; ++seq) {
@@ -341,26 +348,25 @@ TEST_F(MapRecorderTest, AKillInTheSecondSessionCostsNoMapOfTheFirst) {
     MapRecorderNode killed(Options("a"));
     Feed(Recording(3), &killed);
     Feed(session_43(0, 9), &killed);
-    fs::copy(second, folder_ + "/killed");
+    KillNow("a", "b");
+    KillNow("a", "c");
   }
-  fs::copy(folder_ + "/killed", second, fs::copy_options::overwrite_existing);
   {
-    MapRecorderNode node(Options("a"));
+    MapRecorderNode node(Options("b"));
     Feed(session_43(10, 11), &node);
   }
-  EXPECT_EQ(Read(folder_ + "/a").session, kSession);
-  EXPECT_EQ(Read(folder_ + "/a/session_2").frames.rbegin()->first.value, 11);
+  EXPECT_EQ(Read(folder_ + "/b").session, kSession);
+  EXPECT_EQ(Read(folder_ + "/b/session_2").frames.rbegin()->first.value, 11);
 
-  fs::copy(folder_ + "/killed", second, fs::copy_options::overwrite_existing);
   for (int run = 0; run < 2; ++run) {  // the second finds nothing cut short, and replaces
-    MapRecorderNode node(Options("a"));
+    MapRecorderNode node(Options("c"));
     Feed({State(0, 44), Update(0, 0, 1, 44)}, &node);
     CompleteAll(&node);
   }
   MapFileSummary summary;
   EXPECT_EQ(ReadFourDMap(first + ".closed_1", &summary).frames.size(), 3u);
   EXPECT_EQ(ReadFourDMap(second + ".unfinished_1", &summary).session, 43);
-  EXPECT_EQ(Read(folder_ + "/a").session, 44);
+  EXPECT_EQ(Read(folder_ + "/c").session, 44);
   EXPECT_FALSE(fs::exists(first + ".closed_2"));
   EXPECT_FALSE(fs::exists(second));
 }

@@ -41,6 +41,17 @@ await() {
   done
 }
 
+each_script_says_its_version() {
+  local script name
+  for script in "$scripts"/*.sh; do
+    name=$(basename "$script")
+    [[ $name != *common.sh ]] || continue
+    "$script" --version > "$work/out" 2>&1 < /dev/null || fail "$name --version: exit code $?"
+    grep -qxE "$name [0-9]+\.[0-9]+\.[0-9]+ \(([0-9a-f]{7,}|unknown)\)" "$work/out" ||
+      fail "$name --version says '$(cat "$work/out")'"
+  done
+}
+
 wrong_options_exit_2_in_one_line() {
   local script
   for script in setup demo test fuzz spy run_live replay_log long_run; do
@@ -162,6 +173,7 @@ failing_start_is_said() {
   [[ -z $(pids_of airdos-) ]] || fail "processes are left behind"
 }
 
+each_script_says_its_version
 wrong_options_exit_2_in_one_line
 if ! unshare -n true 2> /dev/null && ! unshare -r -n true 2> /dev/null; then
   echo "SKIPPED: no right to make a network namespace"

@@ -50,7 +50,7 @@ TEST(ConfigReaderTest, NamesFileKeyAndValue) {
   EXPECT_EQ(MessageOf([&] { reader.Override("a.nowhere=4"); }),
             "x.yaml: key 'a.nowhere' with value '4': there is no such key");
   EXPECT_EQ(MessageOf([&] { ConfigReader::FromFile("/nowhere/y.yaml"); }),
-            "/nowhere/y.yaml: cannot be read");
+            "/nowhere/y.yaml: cannot be read: No such file or directory");
   EXPECT_EQ(MessageOf([&] { ConfigReader::FromString("a: [", "z.yaml"); }).substr(0, 12),
             "z.yaml: line");
 }

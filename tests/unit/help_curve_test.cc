@@ -128,7 +128,8 @@ TEST(HelpCurve, ReadsRunsAndNamesTheLine) {
   std::ofstream(path) << R"({"sequence": "a", "mode": "on", "max_observations": 3e98, )" << row;
   EXPECT_NE(MessageOf([&] { ReadCappedRuns(path); }).find("is no whole number"), std::string::npos);
   std::filesystem::remove(path);
-  EXPECT_EQ(MessageOf([&] { ReadCappedRuns(path); }), path + ": cannot be read");
+  EXPECT_EQ(MessageOf([&] { ReadCappedRuns(path); }),
+            path + ": cannot be read: No such file or directory");
 }
 
 }  // namespace

@@ -310,7 +310,7 @@ TEST(TorsoPoseTest, LooksWhereThePersonLooks) {
 TEST_F(MapTest, ExportsEverything) {
   WriteSmallMap(path_);
   MapFileSummary summary;
-  const std::vector<std::string> paths = ExportMap(ReadFourDMap(path_, &summary), folder_ + "/out");
+  const std::vector<std::string> paths = ExportMap(ReadFourDMap(path_, &summary), path_, folder_ + "/out", false, nullptr);
   EXPECT_EQ(paths.size(), 7u);
   for (const std::string& path : paths) EXPECT_TRUE(fs::exists(path)) << path;
   const std::string out = folder_ + "/out/";
@@ -340,7 +340,7 @@ TEST_F(MapTest, ExportsEverything) {
 
 TEST_F(MapTest, SaysWhichExportCannotBeWritten) {
   std::ofstream(folder_ + "/file") << "";
-  EXPECT_THROW(ExportMap(FourDMap(), folder_ + "/file"), InputError);
+  EXPECT_THROW(ExportMap(FourDMap(), path_, folder_ + "/file", false, nullptr), InputError);
 }
 
 }  // namespace
