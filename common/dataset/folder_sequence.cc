@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "common/dataset/mask_file.h"
 #include "common/dataset/sequence_files.h"
 #include "common/util/check.h"
 #include "common/util/error.h"
@@ -26,6 +27,20 @@ void CheckSameNames(const FolderSequence::Contents& contents) {
     if (fs::path(contents.left_names[i]).stem() != fs::path(contents.right_names[i]).stem()) {
       throw InputError(left + "/" + contents.left_names[i] + ": has no partner in " + right);
     }
+  }
+}
+
+/// A mask of another kind in the place of `png` must not be passed over in silence.
+void RefuseOtherMask(const std::string& png) {
+  for (const char* ending : {".jpg", ".jpeg", ".JPG", ".PNG", ".npy", ".npz", ".bmp", ".tif",
+                             ".tiff", ".gif", ".webp", ".pgm", ".exr"}) {
+    const std::string other = fs::path(png).replace_extension(ending).string();
+    if (!fs::exists(other)) continue;
+    throw InputError(other + ": masks are read as .png only, this one would be passed over; " +
+                     (std::string(ending).find("j") == 1 || std::string(ending) == ".JPG"
+                          ? "JPEG smears their numbers: "
+                          : "") +
+                     "save them as PNG, 0 for the background, or move the folder away");
   }
 }
 
@@ -62,7 +77,11 @@ SequenceFrame FolderSequence::Load(std::size_t index) const {
   frame.utime = contents_.utimes[index];
   frame.left_image_file = ReadImageFile(names.left_image);
   frame.right_image_file = ReadImageFile(names.right_image);
-  if (fs::exists(names.person_mask)) frame.person_mask_file = ReadImageFile(names.person_mask);
+  if (fs::exists(names.person_mask)) {
+    frame.person_mask_file = ReadMaskFile(names.person_mask, camera().width, camera().height);
+  } else {
+    RefuseOtherMask(names.person_mask);
+  }
   frame.keypoints_left = ReadKeypoints(names.keypoints_left);
   frame.keypoints_right = ReadKeypoints(names.keypoints_right);
   frame.ground_truth = contents_.ground_truth[index];

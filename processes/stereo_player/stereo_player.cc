@@ -91,6 +91,14 @@ bool StereoPlayer::IsCalibrationDue(std::int64_t utime) {
   return true;
 }
 
+void StereoPlayer::SetRangeFor(const std::vector<std::uint8_t>& file) {
+  if (is_range_known_) return;
+  const std::optional<ImageHeader> header = ReadImageHeader(file.data(), file.size());
+  if (!header || header->bits != 16) return;
+  packer_.SetSixteenBitRange(FindSixteenBitRange(*sequence_).value_or(SixteenBitRange()));
+  is_range_known_ = true;
+}
+
 Envelope StereoPlayer::Calibration(const Header& header) const {
   auto message = MessageOf<stereo_calibration_t>(header);
   FromStereoCamera(sequence_->camera(), &message);
@@ -104,13 +112,17 @@ StereoPlayer::Frame StereoPlayer::Load(std::size_t index) {
   std::vector<Envelope>& messages = frame.messages;
   if (IsCalibrationDue(data.utime)) messages.push_back(Calibration(frame.header));
 
-  const auto pack_image = [&](const char* channel, const std::vector<std::uint8_t>& file) {
+  const FrameFiles names = sequence_->files(index);
+  const auto pack_image = [&](const char* channel, const std::vector<std::uint8_t>& file,
+                              const std::string& name) {
     auto message = MessageOf<image_t>(frame.header);
-    packer_.Pack(file, "frame " + std::to_string(index) + " for " + channel, &message);
+    SetRangeFor(file);
+    packer_.Pack(file, name.empty() ? "frame " + std::to_string(index) + " for " + channel : name,
+                 &message);
     messages.push_back(Pack(channel, message));
   };
-  pack_image(channel::kCameraLeft, data.left_image_file);
-  pack_image(channel::kCameraRight, data.right_image_file);
+  pack_image(channel::kCameraLeft, data.left_image_file, names.left_image);
+  pack_image(channel::kCameraRight, data.right_image_file, names.right_image);
   messages.push_back(
       PackKeypoints(channel::kPersonKeypointsLeft, frame.header, data.keypoints_left));
   messages.push_back(

@@ -1,0 +1,85 @@
+#include "common/check/stereo_matches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/features2d.hpp>
+#include <opencv2/video/tracking.hpp>
+
+namespace airdos {
+namespace {
+
+constexpr int kMaxCorners = 800;
+constexpr float kMaxRatio = 0.8F;  // of the best to the second-best distance (Lowe)
+constexpr float kMaxHamming = 60;  // bits of 256
+constexpr double kMaxAlignPx = 3;  // a corner of the pyramid is at most this far off
+
+/// Whether a row of `a` could be one of `b`: a pair that is not rectified at all is seldom further
+/// off than this, and mismatches are all over the image.
+double MaxRowErrorPx(const cv::Mat& image) { return std::max(20.0, 0.1 * image.rows); }
+
+CornerMatches MatchByDescriptor(const cv::Mat& left, const cv::Mat& right) {
+  const cv::Ptr<cv::ORB> orb =
+      cv::ORB::create(kMaxCorners, 1.2F, 3, 31, 0, 2, cv::ORB::FAST_SCORE, 31, 10);
+  std::vector<cv::KeyPoint> corners_left;
+  std::vector<cv::KeyPoint> corners_right;
+  cv::Mat descriptors_left;
+  cv::Mat descriptors_right;
+  orb->detectAndCompute(left, cv::noArray(), corners_left, descriptors_left);
+  orb->detectAndCompute(right, cv::noArray(), corners_right, descriptors_right);
+  CornerMatches matches;
+  if (corners_left.size() < 2 || corners_right.size() < 2) return matches;
+  std::vector<std::vector<cv::DMatch>> nearest;
+  cv::BFMatcher(cv::NORM_HAMMING).knnMatch(descriptors_left, descriptors_right, nearest, 2);
+  for (const std::vector<cv::DMatch>& pair : nearest) {
+    if (pair.size() < 2 || pair[0].distance > kMaxHamming ||
+        pair[0].distance > kMaxRatio * pair[1].distance) {
+      continue;
+    }
+    const cv::Point2f a = corners_left[static_cast<std::size_t>(pair[0].queryIdx)].pt;
+    const cv::Point2f b = corners_right[static_cast<std::size_t>(pair[0].trainIdx)].pt;
+    if (std::abs(a.y - b.y) > MaxRowErrorPx(left) || std::abs(a.x - b.x) > 0.5 * left.cols) {
+      continue;
+    }
+    matches.left.push_back(a);
+    matches.right.push_back(b);
+  }
+  return matches;
+}
+
+/// Corners of a pyramid are good to a pixel or two; aligned patches to a tenth.
+CornerMatches Align(const cv::Mat& left, const cv::Mat& right, const CornerMatches& matches) {
+  CornerMatches aligned;
+  if (matches.left.empty()) return aligned;
+  std::vector<cv::Point2f> found = matches.right;
+  std::vector<unsigned char> status;
+  cv::calcOpticalFlowPyrLK(
+      left, right, matches.left, found, status, cv::noArray(), cv::Size(15, 15), 0,
+      cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 20, 0.02),
+      cv::OPTFLOW_USE_INITIAL_FLOW);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (status[i] == 0 || cv::norm(found[i] - matches.right[i]) > kMaxAlignPx) continue;
+    aligned.left.push_back(matches.left[i]);
+    aligned.right.push_back(found[i]);
+  }
+  return aligned;
+}
+
+}  // namespace
+
+std::vector<double> CornerMatches::Disparities() const {
+  std::vector<double> disparities_px;
+  for (std::size_t i = 0; i < left.size(); ++i) disparities_px.push_back(left[i].x - right[i].x);
+  return disparities_px;
+}
+
+std::vector<double> CornerMatches::RowDifferences() const {
+  std::vector<double> differences_px;
+  for (std::size_t i = 0; i < left.size(); ++i) differences_px.push_back(right[i].y - left[i].y);
+  return differences_px;
+}
+
+CornerMatches MatchCorners(const cv::Mat& left, const cv::Mat& right) {
+  return Align(left, right, MatchByDescriptor(left, right));
+}
+
+}  // namespace airdos
