@@ -122,7 +122,6 @@ class FolderInput : public CheckedInput {
 
   std::vector<StereoPeople> LoadPeople(const std::vector<std::size_t>& frames) const override {
     std::vector<StereoPeople> result;
-    if (!sequence_->has_people()) return result;
     FindingList ignored;  // CheckKeypoints() has said it
     for (const std::size_t frame : frames) {
       const FrameFiles files = sequence_->files(frame);

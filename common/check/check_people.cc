@@ -14,7 +14,7 @@ constexpr double kMargin = 0.1;         // of the image's size: detectors comple
 constexpr int kMinPeople = 5;           // fewer shapes say nothing
 constexpr std::size_t kMaxFlags = 3;    // different confidences that may be flags
 constexpr double kMaxCoverage = 0.9;    // of the image by people
-constexpr double kMaxRippled = 0.15;    // of what is marked (RippledShare())
+constexpr double kMaxRippled = 0.03;    // of what is marked (RippledShare())
 constexpr int kMinMaskPoints = 50;      // fewer keypoints say nothing of a mask
 
 bool IsSeen(const BodyKeypoint& joint) { return joint.confidence > kMinConfidence; }
@@ -281,7 +281,7 @@ void MaskCheck::Report(const std::string& where, FindingList* findings) const {
   for (const std::string& kind : kinds_) {
     if (kind == "8-bit grey") continue;
     findings->Note("masks.kind", where,
-                   "masks are " + kind + ": " +
+                   "masks are stored as " + kind + ": " +
                        (kind == "palette"                       ? "index 0"
                         : kind.find("RGB") != std::string::npos ? "black"
                                                                 : "0") +
@@ -296,8 +296,7 @@ void MaskCheck::Report(const std::string& where, FindingList* findings) const {
     return;
   }
   ReportFull(where, findings);
-  ReportFit(where, findings);
-  ReportClasses(where, findings);
+  if (ReportFit(where, findings)) ReportClasses(where, findings);
 }
 
 void MaskCheck::ReportFull(const std::string& where, FindingList* findings) const {
@@ -315,7 +314,7 @@ void MaskCheck::ReportFull(const std::string& where, FindingList* findings) cons
   }
 }
 
-void MaskCheck::ReportFit(const std::string& where, FindingList* findings) const {
+bool MaskCheck::ReportFit(const std::string& where, FindingList* findings) const {
   const double coverage = Quantile(coverages_, 0.5);
   const bool has_points = num_points_ >= kMinMaskPoints;
   const double inside = has_points ? 1.0 * num_inside_ / num_points_ : 0;
@@ -329,8 +328,9 @@ void MaskCheck::ReportFit(const std::string& where, FindingList* findings) const
     findings->Fail("masks.polarity", where,
                    "fewer keypoints than by chance lie on people: inverted (0 is background), or " +
                        std::string("of other images: ") + text);
+    return false;
   } else if (coverage > kMaxCoverage) {
-    return;  // ReportFull() has said it
+    return false;  // ReportFull() has said it
   } else if (!has_points && coverage > 0.6) {
     findings->Warn("masks.polarity", where, "people are the minority; inverted? " + text);
   } else if (has_points && coverage == 0 && num_inside_ == 0) {
@@ -346,10 +346,11 @@ void MaskCheck::ReportFit(const std::string& where, FindingList* findings) const
   } else {
     findings->Note("masks.polarity", where, text);
   }
+  return true;
 }
 
 void MaskCheck::ReportClasses(const std::string& where, FindingList* findings) const {
-  if (num_points_ < kMinMaskPoints || Quantile(coverages_, 0.5) > kMaxCoverage) return;
+  if (num_points_ < kMinMaskPoints) return;
   constexpr double kMaxWithout = 0.25;  // of the image
   constexpr double kMaxDensity = 0.25;  // of keypoints that were strewn over the image
   double area_without = 0;

@@ -46,7 +46,7 @@ class KeypointCheck {
   std::vector<double> coco17_ratios_;  // disproportion as COCO-17 / as given, per person
   int num_body25_shapes_ = 0;          // people who show what BODY_25 has at 8, 9 and 12
   int num_body25_ = 0;                 // of those, with 8 in the middle of 9 and 12
-  std::set<double> confidences_;        // different ones, the first few
+  std::set<double> confidences_;       // different ones, the first few
   std::vector<double> u_shares_;       // of the width, of seen keypoints; likewise the next
   std::vector<double> v_shares_;
 };
@@ -67,7 +67,8 @@ class MaskCheck {
   void AddPoints(const CheckedPictures& pictures, double coverage);
   void AddValues(const CheckedPictures& pictures);
   void ReportFull(const std::string& where, FindingList* findings) const;
-  void ReportFit(const std::string& where, FindingList* findings) const;
+  /// False where nothing more can be said of the masks.
+  bool ReportFit(const std::string& where, FindingList* findings) const;
   void ReportClasses(const std::string& where, FindingList* findings) const;
 
   StereoCamera camera_;

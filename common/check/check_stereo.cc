@@ -89,8 +89,9 @@ void StereoCheck::Report(const std::string& where, FindingList* findings) const 
                        " pairs: too few to judge order, rectification and depth");
     return;
   }
+  if (is_shift_known_) return;  // of other frames neither order nor depth nor rows say anything
   ReportOrder(where, findings);
-  if (!is_shift_known_) ReportRows(where, findings);
+  ReportRows(where, findings);
 }
 
 double StereoCheck::row_error_px() const {

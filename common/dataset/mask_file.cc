@@ -177,23 +177,28 @@ std::vector<std::uint8_t> ReadMaskFile(const std::string& path, int width, int h
 }
 
 double RippledShare(const PersonMask& mask) {
-  constexpr int kSmallStep = 12;
-  const cv::Mat& values = mask.values;
-  const auto at = [&](int row, int column) {
-    return values.depth() == CV_16U ? static_cast<int>(values.at<std::uint16_t>(row, column))
-                                    : static_cast<int>(values.at<std::uint8_t>(row, column));
+  constexpr int kMaxStep = 12;
+  cv::Mat values;
+  mask.values.convertTo(values, CV_32S);
+  // A crest or a trough between two neighbours that are nearly as high. An edge that was smoothed,
+  // as by a change of size, goes up and down in one direction.
+  const auto is_extreme = [](int before, int value, int after) {
+    const int step_before = value - before;
+    const int step_after = value - after;
+    return step_before != 0 && step_after != 0 && (step_before > 0) == (step_after > 0) &&
+           std::max(std::abs(step_before), std::abs(step_after)) <= kMaxStep;
   };
   std::int64_t num_marked = 0;
   std::int64_t num_rippled = 0;
-  for (int row = 0; row + 1 < values.rows; ++row) {
-    for (int column = 0; column + 1 < values.cols; ++column) {
-      const int value = at(row, column);
-      if (value == 0) continue;
+  for (int row = 1; row + 1 < values.rows; ++row) {
+    const int* above = values.ptr<int>(row - 1);
+    const int* here = values.ptr<int>(row);
+    const int* below = values.ptr<int>(row + 1);
+    for (int i = 1; i + 1 < values.cols; ++i) {
+      if (here[i] == 0) continue;
       ++num_marked;
-      const auto is_small_step = [&](int other) {
-        return other != 0 && other != value && std::abs(other - value) <= kSmallStep;
-      };
-      num_rippled += is_small_step(at(row, column + 1)) || is_small_step(at(row + 1, column));
+      num_rippled +=
+          is_extreme(here[i - 1], here[i], here[i + 1]) || is_extreme(above[i], here[i], below[i]);
     }
   }
   return num_marked == 0 ? 0 : static_cast<double>(num_rippled) / static_cast<double>(num_marked);

@@ -34,9 +34,10 @@ std::string WhyNoMask(const std::uint8_t* data, std::size_t size);
 /// and where the size is another one.
 std::vector<std::uint8_t> ReadMaskFile(const std::string& path, int width, int height);
 
-/// The share of the marked pixels whose number differs a little (1 to 12) from that of a marked
-/// neighbour. Numbers of people or classes are constant over regions: few per cent. A JPEG that was
-/// made into a PNG ripples around every edge: most of what is marked.
+/// The share of the marked pixels whose number is a little (1 to 12) above, or below, those of both
+/// neighbours in its row or column. Numbers of people or classes are constant over regions, and
+/// smoothed edges go one way: below 0.01. A JPEG that was made into a PNG ripples around every
+/// edge: 0.05 to 0.5.
 double RippledShare(const PersonMask& mask);
 
 /// Files of other kinds than PNG that stand in a folder of masks under an image's name, e.g.
