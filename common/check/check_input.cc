@@ -24,7 +24,7 @@ std::vector<std::size_t> SampleEvenly(std::size_t size, std::size_t count) {
 }
 
 std::vector<std::size_t> SampleOfPictures(std::size_t num_frames, const CheckOptions& options) {
-  constexpr std::size_t kQuickPictures = 3;
+  constexpr std::size_t kQuickPictures = 2;
   return SampleEvenly(num_frames, options.is_quick() ? kQuickPictures
                                   : options.all      ? num_frames
                                                      : options.max_frames);

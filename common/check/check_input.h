@@ -68,7 +68,7 @@ struct CheckOptions {
   std::size_t odometry_frames = 30;  ///< to compare with the ground truth; 0: none
   bool all = false;                  ///< look at the pictures of all frames
   /// kQuick: what a program that is about to use the input asks first: layout, counts, headers of
-  /// all files, calibration, times; three pictures, no odometry, no compression.
+  /// all files, calibration, times; two pictures, no odometry, no compression.
   enum class Depth { kQuick, kFull };
   Depth depth = Depth::kFull;
 

@@ -295,45 +295,57 @@ void MaskCheck::Report(const std::string& where, FindingList* findings) const {
                        "once");
     return;
   }
-  ReportFull(where, findings);
-  if (ReportFit(where, findings)) ReportClasses(where, findings);
+  if (ReportInverted(where, findings) || ReportFull(where, findings)) return;
+  ReportFit(where, findings);
+  ReportClasses(where, findings);
 }
 
-void MaskCheck::ReportFull(const std::string& where, FindingList* findings) const {
+std::string MaskCheck::FitText() const {
+  std::string text = "masks cover " + Percent(Quantile(coverages_, 0.5)) + " of the image (median)";
+  if (num_points_ < kMinMaskPoints) return text;
+  return text + ", " + Percent(1.0 * num_inside_ / num_points_) + " of the keypoints lie in them";
+}
+
+bool MaskCheck::ReportInverted(const std::string& where, FindingList* findings) const {
+  if (num_points_ < kMinMaskPoints || Quantile(coverages_, 0.5) <= 0.3) return false;
+  if (num_inside_ >= 0.8 * chance_ || num_inside_ >= 0.5 * num_points_) return false;
+  findings->Fail("masks.polarity", where,
+                 "fewer keypoints than by chance lie on people: inverted (0 is background), or of "
+                 "other images: " +
+                     FitText());
+  return true;
+}
+
+bool MaskCheck::ReportFull(const std::string& where, FindingList* findings) const {
   const double coverage = Quantile(coverages_, 0.5);
   if (coverage > kMaxCoverage) {
     findings->Fail("masks.coverage", where,
                    "masks cover " + Percent(coverage) +
                        " of the image (median): a map where everything has a class, or inverted; 0 "
                        "is wanted for all that is no person");
-  } else if (num_full_ > 0) {
+    return true;
+  }
+  if (num_full_ > 0) {
     findings->Warn("masks.full", first_full_,
                    "here first, the mask covers more than " + Percent(kMaxCoverage) +
                        " of the image in " + std::to_string(num_full_) + " of " +
                        std::to_string(coverages_.size()) + " masks");
   }
+  return false;
 }
 
-bool MaskCheck::ReportFit(const std::string& where, FindingList* findings) const {
+void MaskCheck::ReportFit(const std::string& where, FindingList* findings) const {
   const double coverage = Quantile(coverages_, 0.5);
   const bool has_points = num_points_ >= kMinMaskPoints;
   const double inside = has_points ? 1.0 * num_inside_ / num_points_ : 0;
-  std::string text = "masks cover " + Percent(coverage) + " of the image (median)";
-  if (has_points) text += ", " + Percent(inside) + " of the keypoints lie in them";
+  const std::string text = FitText();
   const auto best = static_cast<std::size_t>(
       std::max_element(num_inside_scaled_.begin(), num_inside_scaled_.end()) -
       num_inside_scaled_.begin());
   const double inside_scaled = num_seen_ > 0 ? 1.0 * num_inside_scaled_[best] / num_seen_ : 0;
-  if (has_points && coverage > 0.3 && num_inside_ < 0.8 * chance_ && inside < 0.5) {
-    findings->Fail("masks.polarity", where,
-                   "fewer keypoints than by chance lie on people: inverted (0 is background), or " +
-                       std::string("of other images: ") + text);
-    return false;
-  } else if (coverage > kMaxCoverage) {
-    return false;  // ReportFull() has said it
-  } else if (!has_points && coverage > 0.6) {
+  if (!has_points && coverage > 0.6) {
     findings->Warn("masks.polarity", where, "people are the minority; inverted? " + text);
-  } else if (has_points && coverage == 0 && num_inside_ == 0) {
+  } else if (has_points && Quantile(coverages_, 1) == 0) {
     findings->Fail("masks.empty", where,
                    "no mask marks anybody, though there are keypoints of people: is everything 0?");
   } else if (has_points && inside < 0.5 && inside_scaled > 0.65 && inside_scaled > 2 * coverage) {
@@ -346,7 +358,6 @@ bool MaskCheck::ReportFit(const std::string& where, FindingList* findings) const
   } else {
     findings->Note("masks.polarity", where, text);
   }
-  return true;
 }
 
 void MaskCheck::ReportClasses(const std::string& where, FindingList* findings) const {

@@ -66,9 +66,11 @@ class MaskCheck {
 
   void AddPoints(const CheckedPictures& pictures, double coverage);
   void AddValues(const CheckedPictures& pictures);
-  void ReportFull(const std::string& where, FindingList* findings) const;
-  /// False where nothing more can be said of the masks.
-  bool ReportFit(const std::string& where, FindingList* findings) const;
+  std::string FitText() const;
+  /// Each is true where it has said what is wrong with the masks as a whole.
+  bool ReportInverted(const std::string& where, FindingList* findings) const;
+  bool ReportFull(const std::string& where, FindingList* findings) const;
+  void ReportFit(const std::string& where, FindingList* findings) const;
   void ReportClasses(const std::string& where, FindingList* findings) const;
 
   StereoCamera camera_;
