@@ -14,7 +14,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 AIRDOS_PACKAGES=(
   cmake g++ ninja-build
   liblcm-dev liblcm-bin liblcm-java libjchart2d-java
-  libopencv-dev libeigen3-dev libceres-dev libyaml-cpp-dev libzstd-dev libssl-dev libcli11-dev nlohmann-json3-dev
+  libopencv-dev libpng-dev libeigen3-dev libceres-dev libyaml-cpp-dev libzstd-dev libssl-dev libcli11-dev nlohmann-json3-dev
   zlib1g-dev libgtest-dev libgmock-dev libbenchmark-dev
   default-jdk-headless default-jre
   iproute2 xvfb xauth jq

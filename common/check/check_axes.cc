@@ -66,7 +66,8 @@ MatchedTrajectories RunOdometry(const CheckedInput& input, const std::vector<std
     pair.time_s = 1e-6 * static_cast<double>(input.utimes()[frame]);
     pair.left = pictures.left;
     pair.right = pictures.right;
-    if (pictures.mask.size() == size) cv::dilate(pictures.mask, pair.mask, mask_margin);
+    if (pictures.mask.pixels.size() == size)
+      cv::dilate(pictures.mask.pixels, pair.mask, mask_margin);
     const OdometryFrame result = odometry.Process(input.camera(), pair);
     if (result.state == TrackingState::kCoasting) continue;
     matched.estimate.push_back(ToTrajectoryPose(result.T_W_C, input.utimes()[frame]));

@@ -34,6 +34,7 @@ std::string Printable(std::string text) {
 
 void FindingList::Add(Severity severity, const std::string& kind, const std::string& where,
                       const std::string& what) {
+  if (!said_.insert(kind + "\n" + where + "\n" + what).second) return;
   ++num_of_severity_[severity];
   if (++num_of_kind_[kind] > kMaxPerKind) return;
   findings_.push_back({severity, kind, Printable(where), Printable(what)});

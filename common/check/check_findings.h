@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <ostream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct Finding {
 
 /// The findings of one input in the order in which they were made. Of each kind the first few are
 /// kept and the others counted, so that a mistake in every file does not hide the other mistakes.
+/// What was said before, word for word, is not said again: two checks may meet the same mistake.
 class FindingList {
  public:
   static constexpr int kMaxPerKind = 3;
@@ -52,6 +54,7 @@ class FindingList {
 
  private:
   std::vector<Finding> findings_;
+  std::set<std::string> said_;
   std::map<std::string, int> num_of_kind_;
   std::map<Severity, int> num_of_severity_;
 };

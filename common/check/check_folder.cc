@@ -1,14 +1,18 @@
 #include "common/check/check_folder.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
+#include <set>
 #include <utility>
 
 #include "common/check/check_files.h"
+#include "common/check/check_images.h"
 #include "common/check/check_jpeg.h"
 #include "common/check/check_people.h"
+#include "common/dataset/image_file.h"
 #include "common/dataset/keypoint_file.h"
+#include "common/dataset/mask_file.h"
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
 
@@ -16,6 +20,10 @@ namespace airdos {
 namespace {
 
 namespace fs = std::filesystem;
+
+bool IsJpegName(const std::string& ending) {
+  return ending == ".jpg" || ending == ".jpeg" || ending == ".JPG" || ending == ".JPEG";
+}
 
 std::string FirstOf(const std::string& folder, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
@@ -45,18 +53,32 @@ CheckedPeople ReadPeople(const std::string& path, FindingList* findings) {
   return result;
 }
 
-/// An 8-bit picture in grey as the file has it; empty, and a finding, where it cannot be read.
-cv::Mat ReadPicture(const std::string& path, const std::string& kind, FindingList* findings) {
+/// Throws nothing: what `read` throws is a finding.
+template <class Read>
+auto ReadOrSay(const std::string& kind, const std::string& path, FindingList* findings, Read read)
+    -> decltype(read()) {
   try {
-    cv::Mat picture = cv::imdecode(ReadImageFile(path), cv::IMREAD_GRAYSCALE);
-    if (!picture.empty()) return picture;
-    findings->Fail(kind, path, "cannot be decoded as an image");
+    return read();
   } catch (const InputError& error) {
     findings->FailFrom(kind, error.what());
   } catch (const cv::Exception&) {  // a header that promises more pixels than OpenCV wants to hold
     findings->Fail(kind, path, "cannot be decoded as an image");
   }
   return {};
+}
+
+/// A picture in grey as the player hands it on; empty, and a finding, where it cannot be read.
+cv::Mat ReadPicture(const std::string& path, const SixteenBitRange& range, FindingList* findings) {
+  return ReadOrSay("images.file", path, findings, [&] {
+    return DecodePicture(ReadBytes(path), path, PictureColor::kGrey, range).pixels;
+  });
+}
+
+PersonMask ReadMask(const std::string& path, FindingList* findings) {
+  return ReadOrSay("masks.file", path, findings, [&] {
+    const std::vector<std::uint8_t> bytes = ReadBytes(path);
+    return DecodePersonMask(bytes.data(), bytes.size(), path);
+  });
 }
 
 class FolderInput : public CheckedInput {
@@ -91,11 +113,9 @@ class FolderInput : public CheckedInput {
       pictures.where_left = files.left_image;
       pictures.where_right = files.right_image;
       pictures.where_mask = files.person_mask;
-      pictures.left = ReadPicture(files.left_image, "images.file", findings);
-      pictures.right = ReadPicture(files.right_image, "images.file", findings);
-      if (fs::exists(files.person_mask)) {
-        pictures.mask = ReadPicture(files.person_mask, "masks.file", findings);
-      }
+      pictures.left = ReadPicture(files.left_image, range_, findings);
+      pictures.right = ReadPicture(files.right_image, range_, findings);
+      if (fs::exists(files.person_mask)) pictures.mask = ReadMask(files.person_mask, findings);
       FindingList ignored;  // CheckKeypoints() has said it
       pictures.people_left = ReadPeople(files.keypoints_left, &ignored);
       result.push_back(std::move(pictures));
@@ -103,11 +123,25 @@ class FolderInput : public CheckedInput {
     return result;
   }
 
+  std::vector<StereoPeople> LoadPeople(const std::vector<std::size_t>& frames) const override {
+    std::vector<StereoPeople> result;
+    FindingList ignored;  // CheckKeypoints() has said it
+    for (const std::size_t frame : frames) {
+      const FrameFiles files = sequence_->files(frame);
+      result.push_back({ReadPeople(files.keypoints_left, &ignored),
+                        ReadPeople(files.keypoints_right, &ignored)});
+    }
+    return result;
+  }
+
   const StereoSequence& sequence() const { return *sequence_; }
+  /// Of 16-bit pictures, before they are loaded.
+  void set_range(const SixteenBitRange& range) { range_ = range; }
 
  private:
   std::string folder_;
   std::unique_ptr<StereoSequence> sequence_;
+  SixteenBitRange range_;
   std::vector<std::int64_t> utimes_;
   std::vector<std::optional<Se3>> ground_truth_;
 };
@@ -141,6 +175,10 @@ void CheckCounts(const StereoSequence& sequence, FindingList* findings) {
     }
     const std::string count = std::to_string(num_used) + " of " +
                               std::to_string(sequence.num_frames()) + " images have " + kind.name;
+    if (num_files == 0 && kind.path == &FrameFiles::person_mask &&
+        !ListOtherMaskFiles(folder).empty()) {
+      continue;  // CheckMaskFiles() says it
+    }
     if (num_files == 0) {
       findings->Note(std::string(kind.name) + ".count", folder, "none: nobody will be known");
     } else if (num_used == 0) {
@@ -156,26 +194,83 @@ void CheckCounts(const StereoSequence& sequence, FindingList* findings) {
   }
 }
 
+/// Files of other kinds in the place of masks, and what the masks' headers say, all of them.
+void CheckMaskFiles(const StereoSequence& sequence, FindingList* findings) {
+  const StereoCamera& camera = sequence.camera();
+  const std::string folder = fs::path(sequence.files(0).person_mask).parent_path().string();
+  std::set<std::string> unmasked;  // images without a mask of the kind that is read
+  for (std::size_t i = 0; i < sequence.num_frames(); ++i) {
+    const std::string path = sequence.files(i).person_mask;
+    if (!fs::exists(path)) {
+      unmasked.insert(fs::path(path).stem().string());
+      continue;
+    }
+    ReadOrSay("masks.file", path, findings, [&] {
+      const std::vector<std::uint8_t> bytes = ReadBytes(path);
+      const std::string why = WhyNoMask(bytes.data(), bytes.size());
+      if (!why.empty()) throw InputError(path + ": " + why);
+      const ImageHeader header = *ReadImageHeader(bytes.data(), bytes.size());
+      if (header.width != camera.width || header.height != camera.height) {
+        findings->Fail("masks.size", path,
+                       SizeMismatchText(header.width, header.height, "the images", camera.width,
+                                        camera.height));
+      }
+      return true;
+    });
+  }
+  const std::vector<std::string> others = ListOtherMaskFiles(folder);
+  if (others.empty()) return;
+  const bool are_needed = std::any_of(others.begin(), others.end(), [&](const std::string& name) {
+    return unmasked.count(fs::path(name).stem().string()) > 0;
+  });
+  const std::string ending = fs::path(others[0]).extension().string();
+  const bool all_other = unmasked.size() == sequence.num_frames();
+  findings->Add(are_needed || all_other ? Severity::kError : Severity::kWarning,
+                "masks.other_files", folder,
+                "holds " + std::to_string(others.size()) + " files that are no .png (" + others[0] +
+                    (others.size() > 1 ? " ..." : "") + "), and masks are read from .png only; " +
+                    (IsJpegName(ending) ? "JPEG smears the numbers of masks: " : "") +
+                    "save them as PNG, 0 for the background, or move them away");
+}
+
 void CheckCompression(const CheckedInput& input, const StereoSequence& sequence,
-                      std::size_t max_frames, FindingList* findings) {
+                      const CheckOptions& options, FindingList* findings) {
   for (const auto& path : {&FrameFiles::left_image, &FrameFiles::right_image}) {
     JpegCheck check;
-    for (const std::size_t frame : SampleEvenly(input.utimes().size(), max_frames)) {
-      check.Add(ReadBytes(sequence.files(frame).*path));
+    for (const std::size_t frame : SampleOfPictures(input.utimes().size(), options)) {
+      ReadOrSay("images.file", sequence.files(frame).*path, findings, [&] {
+        check.Add(ReadBytes(sequence.files(frame).*path));
+        return true;
+      });
     }
     check.Report(fs::path(sequence.files(0).*path).parent_path().string(), findings);
   }
 }
 
-void CheckKeypoints(const StereoSequence& sequence, FindingList* findings) {
+void CheckKeypoints(const StereoSequence& sequence, const CheckOptions& options,
+                    FindingList* findings) {
   if (!sequence.has_people()) return;
   for (const auto& path : {&FrameFiles::keypoints_left, &FrameFiles::keypoints_right}) {
     KeypointCheck check(sequence.camera());
-    for (std::size_t i = 0; i < sequence.num_frames(); ++i) {
+    const std::size_t num_frames = sequence.num_frames();
+    for (const std::size_t i : options.is_quick() ? SampleOfPeople(num_frames, options)
+                                                  : SampleEvenly(num_frames, num_frames)) {
       check.Add(ReadPeople(sequence.files(i).*path, findings), findings);
     }
     check.Report(fs::path(sequence.files(0).*path).parent_path().string(), findings);
   }
+}
+
+/// The headers of all images, and the range of 16-bit ones.
+void CheckImages(FolderInput* input, FindingList* findings) {
+  const std::vector<SurveyedImage> images = SurveyImages(input->sequence());
+  const bool has_sixteen_bits = std::any_of(
+      images.begin(), images.end(),
+      [](const SurveyedImage& image) { return image.header && image.header->bits == 16; });
+  std::optional<SixteenBitRange> range;
+  if (has_sixteen_bits) range = FindSixteenBitRange(input->sequence());
+  if (range) input->set_range(*range);
+  CheckImageFiles(images, input->camera(), range, findings);
 }
 
 }  // namespace
@@ -195,11 +290,13 @@ void CheckFolder(const std::string& folder, const CheckOptions& options, Finding
   }
   ReportNotes(*sequence, findings);
   ReportUnreadFiles(folder, findings);
-  const FolderInput input(folder, std::move(sequence));
+  FolderInput input(folder, std::move(sequence));
   CheckCounts(input.sequence(), findings);
   ReportLayout(input.sequence(), findings);
-  CheckKeypoints(input.sequence(), findings);
-  CheckCompression(input, input.sequence(), options.max_frames, findings);
+  CheckImages(&input, findings);
+  CheckMaskFiles(input.sequence(), findings);
+  CheckKeypoints(input.sequence(), options, findings);
+  if (!options.is_quick()) CheckCompression(input, input.sequence(), options, findings);
   CheckFrames(input, options, findings);
 }
 

@@ -4,7 +4,9 @@
 
 #include "common/check/check_axes.h"
 #include "common/check/check_camera.h"
+#include "common/check/check_pairs.h"
 #include "common/check/check_people.h"
+#include "common/check/check_shift.h"
 #include "common/check/check_stereo.h"
 #include "common/check/check_times.h"
 
@@ -26,13 +28,27 @@ std::vector<std::size_t> SampleEvenly(std::size_t size, std::size_t count) {
   return sample;
 }
 
-void CheckFrames(const CheckedInput& input, const CheckOptions& options, FindingList* findings) {
-  CheckCamera(input.camera(), input.where_camera(), findings);
-  input.ReportTimes(findings);
+std::vector<std::size_t> SampleOfPictures(std::size_t num_frames, const CheckOptions& options) {
+  constexpr std::size_t kQuickPictures = 2;
+  return SampleEvenly(num_frames, options.is_quick() ? kQuickPictures
+                                  : options.all      ? num_frames
+                                                     : options.max_frames);
+}
 
-  StereoCheck stereo(input.camera());
+std::vector<std::size_t> SampleOfPeople(std::size_t num_frames, const CheckOptions& options) {
+  constexpr std::size_t kQuickPeople = 20;
+  constexpr std::size_t kManyPeople = 200;
+  return SampleEvenly(num_frames, options.is_quick() ? kQuickPeople
+                                  : options.all      ? num_frames
+                                                     : kManyPeople);
+}
+
+namespace {
+
+void CheckPictures(const CheckedInput& input, const CheckOptions& options, StereoCheck* stereo,
+                   FindingList* findings) {
   MaskCheck masks(input.camera());
-  const std::vector<std::size_t> sample = SampleEvenly(input.utimes().size(), options.max_frames);
+  const std::vector<std::size_t> sample = SampleOfPictures(input.utimes().size(), options);
   // In portions: a log is read once for each, and pictures are large.
   constexpr std::size_t kPortion = 50;
   for (std::size_t first = 0; first < sample.size(); first += kPortion) {
@@ -41,15 +57,45 @@ void CheckFrames(const CheckedInput& input, const CheckOptions& options, Finding
                                           sample.begin() + static_cast<std::ptrdiff_t>(end));
     for (const CheckedPictures& pictures : input.Load(frames, findings)) {
       if (!pictures.left.empty() && !pictures.right.empty()) {
-        stereo.Add(pictures.where_left, pictures.left, pictures.where_right, pictures.right,
-                   findings);
+        stereo->Add(pictures.where_left, pictures.left, pictures.where_right, pictures.right,
+                    findings);
       }
       masks.Add(pictures, findings);
     }
   }
-  stereo.Report(input.name(), findings);
   masks.Report(input.name(), findings);
-  CheckGroundTruth(input, options.odometry_frames, findings);
+  if (!options.is_quick() && sample.size() < input.utimes().size()) {
+    findings->Note("frames.looked_at", input.name(),
+                   "pictures of " + std::to_string(sample.size()) + " of " +
+                       std::to_string(input.utimes().size()) +
+                       " frames were looked at (--all looks at all)");
+  }
+}
+
+void CheckPairs(const CheckedInput& input, const CheckOptions& options, FindingList* findings) {
+  PeoplePairCheck pairs(input.camera());
+  for (const StereoPeople& people :
+       input.LoadPeople(SampleOfPeople(input.utimes().size(), options))) {
+    pairs.Add(people);
+  }
+  pairs.Report(input.name(), findings);
+}
+
+}  // namespace
+
+void CheckFrames(const CheckedInput& input, const CheckOptions& options, FindingList* findings) {
+  CheckCamera(input.camera(), input.where_camera(), findings);
+  CheckTimes(input.utimes(), input.where_times(), findings);
+
+  StereoCheck stereo(input.camera());
+  CheckPictures(input, options, &stereo, findings);
+  constexpr double kDoubtfulRowsPx = 0.6;
+  constexpr std::size_t kPlaces = 5;
+  const bool may_be_shifted = !options.is_quick() || stereo.row_error_px() > kDoubtfulRowsPx;
+  if (may_be_shifted && CheckShift(input, kPlaces, findings)) stereo.SetShiftKnown();
+  stereo.Report(input.name(), findings);
+  CheckPairs(input, options, findings);
+  if (!options.is_quick()) CheckGroundTruth(input, options.odometry_frames, findings);
 }
 
 }  // namespace airdos

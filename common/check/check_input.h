@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/check/check_findings.h"
+#include "common/dataset/mask_file.h"
 #include "common/dataset/stereo_sequence.h"
 #include "common/geometry/se3.h"
 #include "common/geometry/stereo_camera.h"
@@ -32,8 +33,14 @@ struct CheckedPictures {
   std::string where_mask;
   cv::Mat left;   ///< CV_8UC1
   cv::Mat right;  ///< CV_8UC1
-  cv::Mat mask;   ///< CV_8UC1, not 0 = a person
+  PersonMask mask;
   CheckedPeople people_left;
+};
+
+/// The people of one frame.
+struct StereoPeople {
+  CheckedPeople left;
+  CheckedPeople right;
 };
 
 /// What a folder and a log have in common for the checks.
@@ -54,6 +61,8 @@ class CheckedInput {
   /// or decoded goes to `findings`.
   virtual std::vector<CheckedPictures> Load(const std::vector<std::size_t>& frames,
                                             FindingList* findings) const = 0;
+  /// The people alone of such frames. What cannot be read counts as nobody.
+  virtual std::vector<StereoPeople> LoadPeople(const std::vector<std::size_t>& frames) const = 0;
 };
 
 struct CheckOptions {
@@ -62,7 +71,14 @@ struct CheckOptions {
   std::size_t max_frames = 20;       ///< whose pictures are looked at, evenly spread
   std::size_t odometry_frames = 30;  ///< to compare with the ground truth; 0: none
   std::string calibration = {};      ///< of a folder: SequenceOptions::calibration
+  bool all = false;                  ///< look at the pictures of all frames
+
+  bool is_quick() const { return depth == Depth::kQuick; }
 };
+
+/// Numbers of the frames, of so many, whose pictures, or people, are looked at.
+std::vector<std::size_t> SampleOfPictures(std::size_t num_frames, const CheckOptions& options);
+std::vector<std::size_t> SampleOfPeople(std::size_t num_frames, const CheckOptions& options);
 
 /// `count` numbers evenly spread over 0 .. size - 1, first and last included; all if they are
 /// fewer.

@@ -4,12 +4,17 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "common/dataset/image_file.h"
+
 namespace airdos {
 namespace {
 
 constexpr double kMinConfidence = 0.2;  // of joints that say something of a shape
 constexpr double kMargin = 0.1;         // of the image's size: detectors complete what is cut off
 constexpr int kMinPeople = 5;           // fewer shapes say nothing
+constexpr std::size_t kMaxFlags = 3;    // different confidences that may be flags
+constexpr double kMaxCoverage = 0.9;    // of the image by people
+constexpr double kMaxRippled = 0.03;    // of what is marked (RippledShare())
 constexpr int kMinMaskPoints = 50;      // fewer keypoints say nothing of a mask
 
 bool IsSeen(const BodyKeypoint& joint) { return joint.confidence > kMinConfidence; }
@@ -61,8 +66,11 @@ void KeypointCheck::AddPoints(const CheckedPeople& people, FindingList* findings
   for (const std::vector<BodyKeypoint>& person : people.people) {
     for (const BodyKeypoint& point : person) {
       if (std::abs(point.confidence - 0.5) > std::abs(worst - 0.5)) worst = point.confidence;
+      if (confidences_.size() <= kMaxFlags) confidences_.insert(point.confidence);
       if (!(point.confidence > 0)) continue;
       ++num_points_;
+      u_shares_.push_back(point.u_px / camera_.width);
+      v_shares_.push_back(point.v_px / camera_.height);
       const Eigen::Vector2d distance(std::abs(point.u_px / camera_.width - 0.5),
                                      std::abs(point.v_px / camera_.height - 0.5));
       num_outside += distance.maxCoeff() > 0.5 + kMargin ? 1 : 0;
@@ -93,11 +101,20 @@ void KeypointCheck::AddShape(KeypointLayout layout, const std::vector<BodyKeypoi
     num_good_heads_ += (*body)[kNose].v_px < hip_px ? 1 : 0;
   }
   if (layout != KeypointLayout::kCoco18) return;
+  AddBody25(person);
   const std::optional<BodyKeypoints> as_coco17 =
       MapToBody(KeypointLayout::kCoco17, {person.begin(), person.begin() + 17});
   const std::optional<double> own = Disproportion(*body);
   const std::optional<double> as17 = Disproportion(*as_coco17);
   if (own && as17) coco17_ratios_.push_back(*as17 / std::max(*own, 1e-3));
+}
+
+void KeypointCheck::AddBody25(const std::vector<BodyKeypoint>& person) {
+  if (!IsSeen(person[1]) || !IsSeen(person[8]) || !IsSeen(person[9]) || !IsSeen(person[12])) return;
+  ++num_body25_shapes_;
+  const double trunk_px = std::max(1.0, (person[8].uv_px() - person[1].uv_px()).norm());
+  const Eigen::Vector2d middle = 0.5 * (person[9].uv_px() + person[12].uv_px());
+  num_body25_ += (person[8].uv_px() - middle).norm() < 0.15 * trunk_px ? 1 : 0;
 }
 
 void KeypointCheck::Report(const std::string& where, FindingList* findings) const {
@@ -113,6 +130,7 @@ void KeypointCheck::Report(const std::string& where, FindingList* findings) cons
     findings->Warn("keypoints.confidence", where, "every keypoint has confidence 0 (not seen)");
     return;
   }
+  ReportConfidences(where, findings);
   const double num_points = num_points_;
   if (num_below_two_ > 0.5 * num_points) {
     findings->Fail("keypoints.normalised", where,
@@ -120,10 +138,40 @@ void KeypointCheck::Report(const std::string& where, FindingList* findings) cons
   } else if (num_outside_ > 0.2 * num_points) {
     findings->Fail("keypoints.scale", where,
                    Percent(num_outside_ / num_points) +
-                       " of the keypoints lie outside the image: they are of another size of it");
+                       " of the keypoints lie outside the image: they are of another size of it, "
+                       "about " +
+                       Brief(std::max(Quantile(u_shares_, 0.99), Quantile(v_shares_, 0.99))) +
+                       " times as large");
   } else {
+    ReportExtent(where, findings);
     ReportLayout(where, findings);
   }
+}
+
+void KeypointCheck::ReportConfidences(const std::string& where, FindingList* findings) const {
+  const auto is_one_of = [&](std::set<double> flags) {
+    return std::includes(flags.begin(), flags.end(), confidences_.begin(), confidences_.end());
+  };
+  if (is_one_of({0, 1})) {
+    findings->Note("keypoints.flags", where,
+                   "all confidences are 0 or 1: every joint that is seen counts alike");
+  } else if (is_one_of({0, 1, 2})) {
+    findings->Warn("keypoints.flags", where,
+                   "all confidences are 0, 1 or 2, as COCO's flags of visibility (1: hidden, 2: "
+                   "seen): hidden joints would count as the seen ones; confidences of 0..1 are "
+                   "wanted");
+  }
+}
+
+void KeypointCheck::ReportExtent(const std::string& where, FindingList* findings) const {
+  constexpr int kManyPeople = 40;
+  const double u = Quantile(u_shares_, 0.995);
+  const double v = Quantile(v_shares_, 0.995);
+  if (num_people_ < kManyPeople || u > 0.55 || v > 0.55) return;
+  findings->Warn("keypoints.extent", where,
+                 "all keypoints lie in the upper left " + Percent(u) + " x " + Percent(v) +
+                     " of the image: of an image about " + Brief(std::max(u, v)) +
+                     " times as large?");
 }
 
 void KeypointCheck::ReportLayout(const std::string& where, FindingList* findings) const {
@@ -145,7 +193,16 @@ void KeypointCheck::ReportLayout(const std::string& where, FindingList* findings
   constexpr double kClearlyBetter = 0.7;
   if (coco17_ratios_.size() >= kMinPeople && Quantile(coco17_ratios_, 0.5) < kClearlyBetter) {
     findings->Fail("keypoints.layout", where,
-                   "the order of the joints is not COCO-18, it looks like COCO-17: " + shape);
+                   "the order of the joints is not COCO-18, it looks like COCO-17, or like the "
+                   "first 18 of Halpe-26: " +
+                       shape);
+  } else if (num_body25_shapes_ >= kMinPeople && num_body25_ > 0.7 * num_body25_shapes_) {
+    findings->Fail(
+        "keypoints.layout", where,
+        "the order of the joints is not COCO-18, it looks like the first 18 of OpenPose's "
+        "BODY_25: joint 8 lies in the middle of 9 and 12 in " +
+            Percent(1.0 * num_body25_ / num_body25_shapes_) + " of " +
+            std::to_string(num_body25_shapes_) + " people; give all 25, or write them in COCO-18");
   } else if (num_necks_ >= kMinPeople && necks < 0.5) {
     findings->Fail("keypoints.layout", where,
                    "the order of the joints is not the layout's: " + shape);
@@ -157,50 +214,169 @@ void KeypointCheck::ReportLayout(const std::string& where, FindingList* findings
 }
 
 void MaskCheck::Add(const CheckedPictures& pictures, FindingList* findings) {
-  const cv::Mat& mask = pictures.mask;
+  const cv::Mat& mask = pictures.mask.pixels;
   if (mask.empty()) return;
   if (mask.cols != camera_.width || mask.rows != camera_.height) {
-    findings->Fail("masks.size", pictures.where_mask,
-                   "has " + std::to_string(mask.cols) + " x " + std::to_string(mask.rows) +
-                       " px, the images " + std::to_string(camera_.width) + " x " +
-                       std::to_string(camera_.height));
+    findings->Fail(
+        "masks.size", pictures.where_mask,
+        SizeMismatchText(mask.cols, mask.rows, "the images", camera_.width, camera_.height));
     return;
   }
+  if (!pictures.mask.doubt.empty())
+    findings->Warn("masks.palette", pictures.where_mask, pictures.mask.doubt);
+  kinds_.insert(pictures.mask.kind);
   const double coverage = cv::countNonZero(mask) / static_cast<double>(mask.total());
   coverages_.push_back(coverage);
+  if (coverage > kMaxCoverage && num_full_++ == 0) first_full_ = pictures.where_mask;
+  if (RippledShare(pictures.mask) > kMaxRippled && num_rippled_++ == 0)
+    first_rippled_ = pictures.where_mask;
+  AddPoints(pictures, coverage);
+  AddValues(pictures);
+}
+
+void MaskCheck::AddPoints(const CheckedPictures& pictures, double coverage) {
+  const auto is_marked = [&](const Eigen::Vector2d& uv_px) {
+    return camera_.IsInImage(uv_px) &&
+           pictures.mask.pixels.at<unsigned char>(static_cast<int>(uv_px.y()),
+                                                  static_cast<int>(uv_px.x())) != 0;
+  };
+  for (const std::vector<BodyKeypoint>& person : pictures.people_left.people) {
+    for (const BodyKeypoint& point : person) {
+      if (!IsSeen(point)) continue;
+      for (std::size_t i = 0; i < kFactors.size(); ++i)
+        num_inside_scaled_[i] += is_marked(point.uv_px() / kFactors[i]) ? 1 : 0;
+      ++num_seen_;
+      if (!camera_.IsInImage(point.uv_px())) continue;
+      ++num_points_;
+      chance_ += coverage;
+      num_inside_ += is_marked(point.uv_px()) ? 1 : 0;
+    }
+  }
+}
+
+void MaskCheck::AddValues(const CheckedPictures& pictures) {
+  if (pictures.mask.kind.find("RGB") != std::string::npos) return;
+  cv::Mat values;
+  pictures.mask.values.convertTo(values, CV_32S);
+  std::vector<int> counts(1 << 16);
+  for (int row = 0; row < values.rows; ++row) {
+    for (int column = 0; column < values.cols; ++column)
+      ++counts[static_cast<std::size_t>(values.at<int>(row, column))];
+  }
+  for (std::size_t value = 1; value < counts.size(); ++value) {
+    if (counts[value] == 0) continue;
+    values_[static_cast<int>(value)].area += counts[value] / static_cast<double>(values.total());
+  }
   for (const std::vector<BodyKeypoint>& person : pictures.people_left.people) {
     for (const BodyKeypoint& point : person) {
       if (!IsSeen(point) || !camera_.IsInImage(point.uv_px())) continue;
-      ++num_points_;
-      chance_ += coverage;
-      num_inside_ +=
-          mask.at<unsigned char>(static_cast<int>(point.v_px), static_cast<int>(point.u_px)) != 0
-              ? 1
-              : 0;
+      ++values_[values.at<int>(static_cast<int>(point.v_px), static_cast<int>(point.u_px))]
+            .num_points;
     }
   }
 }
 
 void MaskCheck::Report(const std::string& where, FindingList* findings) const {
   if (coverages_.empty()) return;
+  for (const std::string& kind : kinds_) {
+    if (kind == "8-bit grey") continue;
+    findings->Note("masks.kind", where,
+                   "masks are stored as " + kind + ": " +
+                       (kind == "palette"                       ? "index 0"
+                        : kind.find("RGB") != std::string::npos ? "black"
+                                                                : "0") +
+                       " is the background, anything else a person");
+  }
+  if (num_rippled_ > 0.5 * static_cast<double>(coverages_.size())) {
+    findings->Fail("masks.jpeg", first_rippled_,
+                   "here first, the numbers ripple around the edges in " +
+                       std::to_string(num_rippled_) + " of " + std::to_string(coverages_.size()) +
+                       " masks: they were a JPEG once, which smears them; save the masks as PNG at "
+                       "once");
+    return;
+  }
+  if (ReportInverted(where, findings) || ReportFull(where, findings)) return;
+  ReportFit(where, findings);
+  ReportClasses(where, findings);
+}
+
+std::string MaskCheck::FitText() const {
+  std::string text = "masks cover " + Percent(Quantile(coverages_, 0.5)) + " of the image (median)";
+  if (num_points_ < kMinMaskPoints) return text;
+  return text + ", " + Percent(1.0 * num_inside_ / num_points_) + " of the keypoints lie in them";
+}
+
+bool MaskCheck::ReportInverted(const std::string& where, FindingList* findings) const {
+  if (num_points_ < kMinMaskPoints || Quantile(coverages_, 0.5) <= 0.3) return false;
+  if (num_inside_ >= 0.8 * chance_ || num_inside_ >= 0.5 * num_points_) return false;
+  findings->Fail("masks.polarity", where,
+                 "fewer keypoints than by chance lie on people: inverted (0 is background), or of "
+                 "other images: " +
+                     FitText());
+  return true;
+}
+
+bool MaskCheck::ReportFull(const std::string& where, FindingList* findings) const {
+  const double coverage = Quantile(coverages_, 0.5);
+  if (coverage > kMaxCoverage) {
+    findings->Fail("masks.coverage", where,
+                   "masks cover " + Percent(coverage) +
+                       " of the image (median): a map where everything has a class, or inverted; 0 "
+                       "is wanted for all that is no person");
+    return true;
+  }
+  if (num_full_ > 0) {
+    findings->Warn("masks.full", first_full_,
+                   "here first, the mask covers more than " + Percent(kMaxCoverage) +
+                       " of the image in " + std::to_string(num_full_) + " of " +
+                       std::to_string(coverages_.size()) + " masks");
+  }
+  return false;
+}
+
+void MaskCheck::ReportFit(const std::string& where, FindingList* findings) const {
   const double coverage = Quantile(coverages_, 0.5);
   const bool has_points = num_points_ >= kMinMaskPoints;
   const double inside = has_points ? 1.0 * num_inside_ / num_points_ : 0;
-  std::string text = "masks cover " + Percent(coverage) + " of the image (median)";
-  if (has_points) text += ", " + Percent(inside) + " of the keypoints lie in them";
-  if (has_points && coverage > 0.3 && num_inside_ < 0.8 * chance_ && inside < 0.5) {
-    findings->Fail("masks.polarity", where,
-                   "fewer keypoints than by chance lie on people: inverted (0 is background), or " +
-                       std::string("of other images: ") + text);
-  } else if (!has_points && coverage > 0.6) {
+  const std::string text = FitText();
+  const auto best = static_cast<std::size_t>(
+      std::max_element(num_inside_scaled_.begin(), num_inside_scaled_.end()) -
+      num_inside_scaled_.begin());
+  const double inside_scaled = num_seen_ > 0 ? 1.0 * num_inside_scaled_[best] / num_seen_ : 0;
+  if (!has_points && coverage > 0.6) {
     findings->Warn("masks.polarity", where, "people are the minority; inverted? " + text);
-  } else if (has_points && coverage == 0) {
-    findings->Warn("masks.empty", where, "no mask marks anybody, though there are keypoints");
+  } else if (has_points && Quantile(coverages_, 1) == 0) {
+    findings->Fail("masks.empty", where,
+                   "no mask marks anybody, though there are keypoints of people: is everything 0?");
+  } else if (has_points && inside < 0.5 && inside_scaled > 0.65 && inside_scaled > 2 * coverage) {
+    findings->Fail("keypoints.resolution", where,
+                   "the keypoints fit the masks (" + Percent(inside_scaled) +
+                       " in them) only as those of an image " + Brief(kFactors[best]) +
+                       " times as large: " + text);
   } else if (has_points && inside < 0.4) {
     findings->Warn("masks.keypoints", where, "masks and keypoints do not fit together: " + text);
   } else {
     findings->Note("masks.polarity", where, text);
   }
+}
+
+void MaskCheck::ReportClasses(const std::string& where, FindingList* findings) const {
+  if (num_points_ < kMinMaskPoints) return;
+  constexpr double kMaxWithout = 0.25;  // of the image
+  constexpr double kMaxDensity = 0.25;  // of keypoints that were strewn over the image
+  double area_without = 0;
+  std::string names;
+  for (const auto& [value, seen] : values_) {
+    const double area = seen.area / static_cast<double>(coverages_.size());
+    if (value == 0 || area < 0.01 || seen.num_points > kMaxDensity * area * num_points_) continue;
+    area_without += area;
+    names += (names.empty() ? "" : ", ") + std::to_string(value);
+  }
+  if (area_without < kMaxWithout) return;
+  findings->Warn("masks.classes", where,
+                 "the numbers " + names + " mark " + Percent(area_without) +
+                     " of the image, but hardly any keypoint: a map of classes? Only people (and "
+                     "what else moves) may be marked");
 }
 
 }  // namespace airdos

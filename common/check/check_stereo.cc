@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/check/stereo_matches.h"
+#include "common/dataset/image_file.h"
 
 namespace airdos {
 namespace {
@@ -11,9 +12,6 @@ namespace {
 constexpr int kMaxCorners = 800;
 constexpr int kMinMatches = 40;        // fewer say nothing
 constexpr double kMinClearSign = 0.7;  // share of the matches that must agree on a sign
-
-std::string SizeOf(const cv::Mat& image) {
-  return std::to_string(image.cols) + " x " + std::to_string(image.rows);
 }
 
 }  // namespace
@@ -24,18 +22,16 @@ void StereoCheck::Add(const std::string& where_left, const cv::Mat& left,
   for (const auto& [where, image] : {std::make_pair(where_left, left), {where_right, right}}) {
     if (image.cols == camera_.width && image.rows == camera_.height) continue;
     fits = false;
-    findings->Fail("images.size", where,
-                   "has " + SizeOf(image) + " px, the camera " + std::to_string(camera_.width) +
-                       " x " + std::to_string(camera_.height));
+    findings->Fail(
+        "images.size", where,
+        SizeMismatchText(image.cols, image.rows, "the camera", camera_.width, camera_.height));
   }
   if (!fits) return;
   ++num_pairs_;
   if (cv::norm(left, right, cv::NORM_INF) == 0) ++num_identical_;
   const StereoMatches matches = MatchStereo(left, right, kMaxCorners);
-  for (std::size_t i = 0; i < matches.left.size(); ++i) {
-    disparities_px_.push_back(matches.left[i].x - matches.right[i].x);
-    row_errors_px_.push_back(matches.right[i].y - matches.left[i].y);
-  }
+  for (const double value : matches.Disparities()) disparities_px_.push_back(value);
+  for (const double value : matches.RowDifferences()) row_errors_px_.push_back(value);
 }
 
 void StereoCheck::Report(const std::string& where, FindingList* findings) const {
@@ -53,8 +49,15 @@ void StereoCheck::Report(const std::string& where, FindingList* findings) const 
                        " pairs: too few to judge order, rectification and depth");
     return;
   }
+  if (is_shift_known_) return;  // of other frames neither order nor depth nor rows say anything
   ReportOrder(where, findings);
   ReportRows(where, findings);
+}
+
+double StereoCheck::row_error_px() const {
+  std::vector<double> absolute_px;
+  for (const double error_px : row_errors_px_) absolute_px.push_back(std::abs(error_px));
+  return Quantile(absolute_px, 0.5);
 }
 
 void StereoCheck::ReportOrder(const std::string& where, FindingList* findings) const {
@@ -82,7 +85,7 @@ void StereoCheck::ReportOrder(const std::string& where, FindingList* findings) c
 void StereoCheck::ReportRows(const std::string& where, FindingList* findings) const {
   std::vector<double> absolute_px;
   for (const double error_px : row_errors_px_) absolute_px.push_back(std::abs(error_px));
-  const double median_px = Quantile(absolute_px, 0.5);
+  const double median_px = row_error_px();
   const std::string rows = "rows of matches differ by " + Brief(median_px) + " px (median), " +
                            Brief(Quantile(absolute_px, 0.9)) + " px (90 %), on the whole by " +
                            Brief(Quantile(row_errors_px_, 0.5)) + " px";

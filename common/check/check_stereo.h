@@ -11,9 +11,8 @@
 namespace airdos {
 
 /// Whether pairs of images are what they are said to be: of one size, left and right (disparities
-/// are positive), different, rectified (matches lie on one row), and at plausible depths. Corners
-/// are matched by descriptor without regard to rows or signs, then aligned to a fraction of a
-/// pixel; mismatches are few enough for medians.
+/// are positive), different, rectified (matches lie on one row), and at plausible depths
+/// (MatchStereo() in stereo_matches.h).
 class StereoCheck {
  public:
   explicit StereoCheck(const StereoCamera& camera) : camera_(camera) {}
@@ -23,6 +22,11 @@ class StereoCheck {
            const cv::Mat& right, FindingList* findings);
   void Report(const std::string& where, FindingList* findings) const;
 
+  /// Median of the absolute differences of rows so far, px.
+  double row_error_px() const;
+  /// Why the rows differ has been found and said (check_shift.h).
+  void SetShiftKnown() { is_shift_known_ = true; }
+
  private:
   void ReportOrder(const std::string& where, FindingList* findings) const;
   void ReportRows(const std::string& where, FindingList* findings) const;
@@ -31,6 +35,7 @@ class StereoCheck {
   StereoCamera camera_;
   int num_pairs_ = 0;
   int num_identical_ = 0;
+  bool is_shift_known_ = false;
   std::vector<double> disparities_px_;  // u_left - u_right
   std::vector<double> row_errors_px_;   // v_right - v_left
 };

@@ -69,6 +69,18 @@ StereoMatches Align(const cv::Mat& left, const cv::Mat& right, const StereoMatch
 
 }  // namespace
 
+std::vector<double> StereoMatches::Disparities() const {
+  std::vector<double> disparities_px;
+  for (std::size_t i = 0; i < left.size(); ++i) disparities_px.push_back(left[i].x - right[i].x);
+  return disparities_px;
+}
+
+std::vector<double> StereoMatches::RowDifferences() const {
+  std::vector<double> differences_px;
+  for (std::size_t i = 0; i < left.size(); ++i) differences_px.push_back(right[i].y - left[i].y);
+  return differences_px;
+}
+
 StereoMatches MatchStereo(const cv::Mat& left, const cv::Mat& right, int max_corners) {
   return Align(left, right, MatchByDescriptor(left, right, max_corners));
 }
@@ -78,11 +90,11 @@ std::optional<RowError> MeasureRowError(const cv::Mat& left, const cv::Mat& righ
   const StereoMatches matches = MatchStereo(left, right, max_corners);
   const std::size_t num_matches = matches.left.size();
   if (num_matches < kMinRowMatches) return std::nullopt;
-  std::vector<double> rows_px;
+  std::vector<double> rows_px = matches.RowDifferences();
+  for (double& row_px : rows_px) row_px = std::abs(row_px);
   double num_negative = 0;
-  for (std::size_t i = 0; i < num_matches; ++i) {
-    rows_px.push_back(std::abs(matches.right[i].y - matches.left[i].y));
-    num_negative += matches.left[i].x - matches.right[i].x < -kNoSignPx ? 1 : 0;
+  for (const double disparity_px : matches.Disparities()) {
+    num_negative += disparity_px < -kNoSignPx ? 1 : 0;
   }
   return RowError{static_cast<int>(num_matches), Quantile(rows_px, 0.5),
                   num_negative / static_cast<double>(num_matches)};

@@ -10,7 +10,10 @@ namespace airdos {
 /// Corners that are seen in both images of a pair, px.
 struct StereoMatches {
   std::vector<cv::Point2f> left;
-  std::vector<cv::Point2f> right;
+  std::vector<cv::Point2f> right;  ///< of the same corners
+
+  std::vector<double> Disparities() const;     ///< u_left - u_right, px
+  std::vector<double> RowDifferences() const;  ///< v_right - v_left, px
 };
 
 /// Matches by descriptor without regard to rows or signs, aligned to a fraction of a pixel, so that

@@ -5,6 +5,7 @@
 
 #include "common/dataset/image_rows.h"
 #include "common/dataset/keypoint_file.h"
+#include "common/dataset/mask_file.h"
 #include "common/dataset/sequence_files.h"
 #include "common/dataset/times_file.h"
 #include "common/util/check.h"
@@ -65,6 +66,20 @@ void FillTimes(FolderSequence::Contents* contents) {
                             named->unit);
 }
 
+/// A mask of another kind in the place of `png` must not be passed over in silence.
+void RefuseOtherMask(const std::string& png) {
+  for (const char* ending : {".jpg", ".jpeg", ".JPG", ".PNG", ".npy", ".npz", ".bmp", ".tif",
+                             ".tiff", ".gif", ".webp", ".pgm", ".exr"}) {
+    const std::string other = fs::path(png).replace_extension(ending).string();
+    if (!fs::exists(other)) continue;
+    throw InputError(other + ": masks are read as .png only, this one would be passed over; " +
+                     (std::string(ending).find("j") == 1 || std::string(ending) == ".JPG"
+                          ? "JPEG smears their numbers: "
+                          : "") +
+                     "save them as PNG, 0 for the background, or move the folder away");
+  }
+}
+
 }  // namespace
 
 FolderSequence::FolderSequence(Contents contents) : contents_(std::move(contents)) {
@@ -111,7 +126,11 @@ SequenceFrame FolderSequence::Load(std::size_t index) const {
   frame.utime = contents_.utimes[index];
   frame.left_image_file = ReadImageFile(names.left_image);
   frame.right_image_file = ReadImageFile(names.right_image);
-  if (fs::exists(names.person_mask)) frame.person_mask_file = ReadImageFile(names.person_mask);
+  if (fs::exists(names.person_mask)) {
+    frame.person_mask_file = ReadMaskFile(names.person_mask, camera().width, camera().height);
+  } else {
+    RefuseOtherMask(names.person_mask);
+  }
   frame.keypoint_layout = keypoint_layout_;
   const auto read_people = [&](const std::string& path) {
     KeypointFile file = ReadKeypoints(path);

@@ -10,6 +10,7 @@
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/dataset/image_file.h"
 #include "common/dataset/times_file.h"
 #include "common/util/error.h"
 #include "common/util/image_header.h"
@@ -73,10 +74,8 @@ std::vector<std::uint8_t> ReadBytes(const std::string& path) {
 
 std::vector<std::uint8_t> ReadImageFile(const std::string& path) {
   std::vector<std::uint8_t> bytes = ReadBytes(path);
-  const bool is_jpeg = bytes.size() > 4 && bytes[0] == 0xFF && bytes[1] == 0xD8 && bytes[2] == 0xFF;
-  const bool is_png =
-      bytes.size() > 8 && bytes[0] == 0x89 && bytes[1] == 'P' && bytes[2] == 'N' && bytes[3] == 'G';
-  if (!is_jpeg && !is_png) throw InputError(path + ": is neither a JPEG nor a PNG file");
+  const std::string why = WhyNoPicture(bytes.data(), bytes.size());
+  if (!why.empty()) throw InputError(path + ": " + why);
   return bytes;
 }
 
@@ -85,7 +84,7 @@ std::pair<int, int> ReadImageSize(const std::string& path) {
   cv::Mat image;
   try {
     if (ReadImageHeader(bytes.data(), bytes.size()))  // before there is room for what it claims
-      image = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
+      image = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {
     image.release();
   }

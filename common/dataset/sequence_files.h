@@ -15,7 +15,7 @@ namespace airdos {
 
 /// A whole file of at most 32 MB.
 std::vector<std::uint8_t> ReadBytes(const std::string& path);
-/// A whole JPEG or PNG file, told by its first bytes.
+/// A whole JPEG or PNG file of a camera's picture (WhyNoPicture() in image_file.h is empty).
 std::vector<std::uint8_t> ReadImageFile(const std::string& path);
 /// Width and height in px.
 std::pair<int, int> ReadImageSize(const std::string& path);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 namespace airdos {
 
@@ -14,6 +15,15 @@ inline constexpr std::int64_t kMaxImagePixels = 12000000;
 struct ImageHeader {
   std::int64_t width = 0;   ///< px
   std::int64_t height = 0;  ///< px
+  bool is_png = false;      ///< else JPEG
+  int bits = 8;             ///< of a sample
+  /// Samples of a pixel. PNG: 1 grey or index, 2 grey and alpha, 3 RGB, 4 RGB and alpha. JPEG: 1
+  /// grey, 3 colour, 4 CMYK.
+  int num_channels = 1;
+  bool is_palette = false;  ///< samples are indices into a palette (PNG)
+  int orientation = 1;      ///< EXIF's wish to turn or mirror the picture, 1..8; 1: as it is stored
+
+  bool has_alpha() const { return is_png && (num_channels == 2 || num_channels == 4); }
 };
 
 /// What a JPEG or PNG file says of itself before anything is decoded: decoders make room for what
@@ -23,6 +33,18 @@ struct ImageHeader {
 /// ten).
 inline constexpr int kMaxJpegScans = 64;
 std::optional<ImageHeader> ReadImageHeader(const std::uint8_t* data, std::size_t size);
+
+/// Whether a JPEG or PNG file ends before its picture does: a JPEG without an end of image (FF D9)
+/// after its first start of scan, a PNG whose chunks do not lead to IEND. What follows the end does
+/// not count. Decoders fill up the rest of such a JPEG with grey and say nothing.
+bool IsCutShort(const std::uint8_t* data, std::size_t size);
+
+/// What kind of file the first bytes are those of, in words: "a JPEG file", "a TIFF file", "a NumPy
+/// array (.npy)", "a Git LFS pointer, not the file itself", "empty"; "a file of unknown kind".
+std::string FileKindOf(const std::uint8_t* data, std::size_t size);
+
+/// "turned by 180 degrees": what an EXIF orientation of 2..8 asks for.
+std::string OrientationText(int orientation);
 
 }  // namespace airdos
 

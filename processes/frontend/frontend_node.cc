@@ -184,19 +184,20 @@ std::vector<PersonMeasurement> FrontendNode::People(const FrontendInputs& inputs
   return people;
 }
 
-bool FrontendNode::Fits(const std::optional<cv::Mat>& image, const char* channel) {
+bool FrontendNode::Fits(const std::optional<cv::Mat>& image, const char* channel,
+                        const std::string& reason) {
   if (image && image->size() == cv::Size(camera().width, camera().height)) return true;
   ++counters(channel).num_rejected;
-  counters(channel).last_reject =
-      image ? "its size is not that of the calibration" : "the image does not decode";
+  counters(channel).last_reject = image ? "its size is not that of the calibration" : reason;
   return false;
 }
 
 cv::Mat FrontendNode::Mask(const FrontendInputs& inputs) {
   cv::Mat mask;
   if (inputs.mask && inputs.mask->encoding != person_mask_t::ENCODING_NONE) {
-    const std::optional<cv::Mat> decoded = DecodeMask(*inputs.mask);
-    if (Fits(decoded, channel::kPersonMask)) mask = *decoded;
+    std::string reason;
+    const std::optional<cv::Mat> decoded = DecodeMask(*inputs.mask, &reason);
+    if (Fits(decoded, channel::kPersonMask, reason)) mask = *decoded;
   }
   const std::vector<BodyKeypoints> people =
       inputs.keypoints ? ToPeople(*inputs.keypoints) : std::vector<BodyKeypoints>();
@@ -214,11 +215,13 @@ cv::Mat FrontendNode::Mask(const FrontendInputs& inputs) {
 std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
                                                     const FrontendInputs& inputs) {
   if (!inputs.left) return std::nullopt;
-  const std::optional<cv::Mat> left = DecodeGray(*inputs.left);
+  std::string reason_left;
+  std::string reason_right;
+  const std::optional<cv::Mat> left = DecodeGray(*inputs.left, &reason_left);
   std::optional<cv::Mat> right;
-  if (inputs.right) right = DecodeGray(*inputs.right);
-  const bool has_right = inputs.right && Fits(right, channel::kCameraRight);
-  if (!Fits(left, channel::kCameraLeft)) return std::nullopt;
+  if (inputs.right) right = DecodeGray(*inputs.right, &reason_right);
+  const bool has_right = inputs.right && Fits(right, channel::kCameraRight, reason_right);
+  if (!Fits(left, channel::kCameraLeft, reason_left)) return std::nullopt;
   // Images of other times are no pair, rectified or not; that is said of their numbers.
   constexpr std::int64_t kMaxApart_us = 20000;
   const bool is_pair = has_right && inputs.right->utime <= inputs.left->utime + kMaxApart_us &&

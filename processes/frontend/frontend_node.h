@@ -76,7 +76,7 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   std::optional<std::int64_t> RequiredUpdate() const;
   void ApplyUpdates();
   static std::vector<PersonMeasurement> People(const FrontendInputs& inputs);
-  bool Fits(const std::optional<cv::Mat>& image, const char* channel);
+  bool Fits(const std::optional<cv::Mat>& image, const char* channel, const std::string& reason);
   /// Where people are, from masks, or else from keypoints; empty if nothing says.
   cv::Mat Mask(const FrontendInputs& inputs);
   std::optional<StereoImagePair> Images(const Header& header, const FrontendInputs& inputs);

@@ -66,11 +66,11 @@ void HumanTrackerNode::StartSession(const Header& header) {
                                             HumanId{FirstRunningNumber(header.seq, kMostPerFrame)});
 }
 
-bool HumanTrackerNode::Fits(const std::optional<cv::Mat>& image, const char* channel) {
+bool HumanTrackerNode::Fits(const std::optional<cv::Mat>& image, const char* channel,
+                            const std::string& reason) {
   if (image && image->size() == cv::Size(camera().width, camera().height)) return true;
   ++counters(channel).num_rejected;
-  counters(channel).last_reject =
-      image ? "its size is not that of the calibration" : "the image does not decode";
+  counters(channel).last_reject = image ? "its size is not that of the calibration" : reason;
   return false;
 }
 
@@ -95,16 +95,17 @@ void HumanTrackerNode::WatchKeypoints(const HumanTrackerInputs& inputs, const Pe
 
 void HumanTrackerNode::ProcessFrame(const Header& header, HumanTrackerInputs inputs) {
   PeopleFrame frame;
+  std::string reason;
   if (inputs.left_image) {
-    const std::optional<cv::Mat> color = DecodeColor(*inputs.left_image);
-    if (Fits(color, channel::kCameraLeft)) {
+    const std::optional<cv::Mat> color = DecodeColor(*inputs.left_image, &reason);
+    if (Fits(color, channel::kCameraLeft, reason)) {
       frame.left_color = *color;
       cv::cvtColor(*color, frame.left_gray, cv::COLOR_BGR2GRAY);
     }
   }
   if (inputs.right_image) {
-    const std::optional<cv::Mat> gray = DecodeGray(*inputs.right_image);
-    if (Fits(gray, channel::kCameraRight)) frame.right_gray = *gray;
+    const std::optional<cv::Mat> gray = DecodeGray(*inputs.right_image, &reason);
+    if (Fits(gray, channel::kCameraRight, reason)) frame.right_gray = *gray;
   }
   frame.left = PeopleOf(inputs.left_keypoints);
   frame.right = PeopleOf(inputs.right_keypoints);

@@ -43,7 +43,7 @@ class HumanTrackerNode : public FrameNode<HumanTrackerInputs> {
   };
   void WatchKeypoints(const HumanTrackerInputs& inputs, const PeopleFrame& frame);
   /// Whether the image has the size that the calibration says; counts a reject otherwise.
-  bool Fits(const std::optional<cv::Mat>& image, const char* channel);
+  bool Fits(const std::optional<cv::Mat>& image, const char* channel, const std::string& reason);
 
   HumanTrackerOptions options_;
   std::unique_ptr<HumanTracker> tracker_;

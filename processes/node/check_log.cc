@@ -88,6 +88,24 @@ class LogInput : public CheckedInput {
     return result;
   }
 
+  std::vector<StereoPeople> LoadPeople(const std::vector<std::size_t>& frames) const override {
+    std::map<LogSurvey::FrameKey, StereoPeople> wanted;
+    for (const std::size_t frame : frames) wanted[survey_->frames()[frame]];
+    EventLogReader reader(path_);
+    while (const std::optional<LogEvent> event = reader.Next()) {
+      const bool is_left = event->channel == channel::kPersonKeypointsLeft;
+      if (!is_left && event->channel != channel::kPersonKeypointsRight) continue;
+      const auto message = DecodeSound<person_keypoints_t>(*event);
+      const auto people = message ? wanted.find({message->session, message->seq}) : wanted.end();
+      if (people == wanted.end()) continue;
+      (is_left ? people->second.left : people->second.right) =
+          ToCheckedPeople(path_, *event, *message);
+    }
+    std::vector<StereoPeople> result;
+    for (const std::size_t frame : frames) result.push_back(wanted[survey_->frames()[frame]]);
+    return result;
+  }
+
  private:
   void Take(const LogEvent& event, CheckedPictures* pictures, FindingList* findings) const {
     if (event.channel == channel::kCameraLeft || event.channel == channel::kCameraRight) {
@@ -96,9 +114,10 @@ class LogInput : public CheckedInput {
       const bool is_left = event.channel == channel::kCameraLeft;
       const std::string where = LogSurvey::Where(path_, event.channel, message->seq);
       (is_left ? pictures->where_left : pictures->where_right) = where;
-      const std::optional<cv::Mat> picture = DecodeGray(*message);
+      std::string reason;
+      const std::optional<cv::Mat> picture = DecodeGray(*message, &reason);
       if (!picture) {
-        findings->Fail("images.file", where, "cannot be decoded: the file in it is damaged");
+        findings->Fail("images.file", where, reason);
       } else if (HasCameraSize(*picture)) {
         (is_left ? pictures->left : pictures->right) = *picture;
       }
@@ -107,11 +126,12 @@ class LogInput : public CheckedInput {
       if (!message || message->encoding == person_mask_t::ENCODING_NONE) return;
       if (ContradictsItself(*message)) return;
       pictures->where_mask = LogSurvey::Where(path_, event.channel, message->seq);
-      const std::optional<cv::Mat> picture = DecodeMask(*message);
-      if (!picture) {
-        findings->Fail("masks.file", pictures->where_mask, "cannot be decoded as a mask");
-      } else if (HasCameraSize(*picture)) {
-        pictures->mask = *picture;
+      std::string reason;
+      const std::optional<PersonMask> mask = DecodeMaskMessage(*message, &reason);
+      if (!mask) {
+        findings->Fail("masks.file", pictures->where_mask, reason);
+      } else if (HasCameraSize(mask->pixels)) {
+        pictures->mask = *mask;
       }
     } else if (event.channel == channel::kPersonKeypointsLeft) {
       const auto message = DecodeSound<person_keypoints_t>(event);

@@ -1,12 +1,11 @@
 #include "processes/stereo_player/image_packer.h"
 
-#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
 #include "common/util/error.h"
-#include "common/util/image_header.h"
 
 namespace airdos {
 namespace {
@@ -29,10 +28,28 @@ void SetData(std::vector<std::uint8_t> bytes, std::int8_t encoding, image_t* mes
 
 }  // namespace
 
-void ImagePacker::Note(const std::string& note) {
-  if (std::find(said_.begin(), said_.end(), note) != said_.end()) return;
-  said_.push_back(note);
-  notes_.push_back(note);
+void ImagePacker::Note(const std::string& kind, const std::string& note) {
+  if (said_.insert(kind).second) notes_.push_back(note);
+}
+
+void ImagePacker::NoteLarge() {
+  Note("large", "PNG images above the limit: receivers need a large socket buffer");
+}
+
+void ImagePacker::NotePixels(const ImageHeader& header, const Picture& picture,
+                             const std::string& name) {
+  if (header.orientation != 1) {
+    Note("orientation " + std::to_string(header.orientation),
+         name + ": its EXIF data want it " + OrientationText(header.orientation) +
+             "; this is ignored, pixels are taken as they are stored");
+  }
+  if (header.bits == 16) Note("range", RangeText(range_));
+  if (picture.saturated > 1e-3) {
+    Note("saturated", name + ": " + std::to_string(std::lround(100 * picture.saturated)) +
+                          " % of its samples have more than " + std::to_string(range_.bits) +
+                          " bits and are cut off at white");
+  }
+  if (header.has_alpha()) Note("alpha", name + ": its alpha channel is not used");
 }
 
 std::vector<std::string> ImagePacker::TakeNotes() { return std::exchange(notes_, {}); }
@@ -46,8 +63,29 @@ bool ImagePacker::PackUnchanged(const std::vector<std::uint8_t>& file, image_t* 
   }
   if (IsPng(file) &&
       (options_.encoding == Encoding::kPng || (options_.encoding == Encoding::kAuto && fits))) {
-    if (!fits) Note("PNG images above the limit: receivers need a large socket buffer");
+    if (!fits) NoteLarge();
     SetData(file, image_t::ENCODING_PNG, message);
+    return true;
+  }
+  return false;
+}
+
+void ImagePacker::PackPng(const cv::Mat& image, image_t* message) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", image, bytes);
+  if (static_cast<int>(bytes.size()) > options_.max_image_bytes) NoteLarge();
+  SetData(std::move(bytes), image_t::ENCODING_PNG, message);
+}
+
+bool ImagePacker::PackJpeg(const cv::Mat& image, image_t* message) {
+  std::vector<std::uint8_t> bytes;
+  for (const int quality : options_.jpeg_qualities) {
+    cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
+    if (static_cast<int>(bytes.size()) > options_.max_image_bytes) continue;
+    Note("quality " + std::to_string(quality),
+         "images are encoded as JPEG of quality " + std::to_string(quality) + " to fit into " +
+             std::to_string(options_.max_image_bytes) + " bytes");
+    SetData(std::move(bytes), image_t::ENCODING_JPEG, message);
     return true;
   }
   return false;
@@ -55,37 +93,18 @@ bool ImagePacker::PackUnchanged(const std::vector<std::uint8_t>& file, image_t* 
 
 void ImagePacker::Pack(const std::vector<std::uint8_t>& file, const std::string& name,
                        image_t* message) {
-  cv::Mat image;
-  try {
-    if (ReadImageHeader(file.data(), file.size()))
-      image = cv::imdecode(file, cv::IMREAD_ANYCOLOR);  // 8 bit, grey or BGR
-  } catch (const cv::Exception&) {
-    image.release();
-  }
-  if (image.empty()) throw InputError(name + ": is no image that can be decoded");
-  message->width = image.cols;
-  message->height = image.rows;
-  if (PackUnchanged(file, message)) return;
-
-  std::vector<std::uint8_t> bytes;
+  const Picture picture = DecodePicture(file, name, PictureColor::kAsStored, range_);
+  const ImageHeader header = *ReadImageHeader(file.data(), file.size());
+  NotePixels(header, picture, name);
+  message->width = picture.pixels.cols;
+  message->height = picture.pixels.rows;
+  if (header.bits != 16 && PackUnchanged(file, message)) return;
   if (options_.encoding == ImagePackerOptions::Encoding::kPng) {
-    cv::imencode(".png", image, bytes);
-    if (static_cast<int>(bytes.size()) > options_.max_image_bytes) {
-      Note("PNG images above the limit: receivers need a large socket buffer");
-    }
-    SetData(std::move(bytes), image_t::ENCODING_PNG, message);
-    return;
+    PackPng(picture.pixels, message);
+  } else if (!PackJpeg(picture.pixels, message)) {
+    throw InputError(name + ": does not fit into " + std::to_string(options_.max_image_bytes) +
+                     " bytes at any of the JPEG qualities");
   }
-  for (const int quality : options_.jpeg_qualities) {
-    cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
-    if (static_cast<int>(bytes.size()) > options_.max_image_bytes) continue;
-    Note("images are encoded as JPEG of quality " + std::to_string(quality) + " to fit into " +
-         std::to_string(options_.max_image_bytes) + " bytes");
-    SetData(std::move(bytes), image_t::ENCODING_JPEG, message);
-    return;
-  }
-  throw InputError(name + ": does not fit into " + std::to_string(options_.max_image_bytes) +
-                   " bytes at any of the JPEG qualities");
 }
 
 }  // namespace airdos

@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "airdos/image_t.hpp"
+#include "common/dataset/image_file.h"
 
 namespace airdos {
 
@@ -26,20 +28,30 @@ class ImagePacker {
  public:
   explicit ImagePacker(const ImagePackerOptions& options) : options_(options) {}
 
+  /// How 16-bit pictures become 8 bits; they cannot be packed before this is known.
+  void SetSixteenBitRange(const SixteenBitRange& range) { range_ = range; }
+
   /// `file` is a whole JPEG or PNG file, `name` says which one in errors. Sets size, encoding and
-  /// data. Throws InputError if the file cannot be decoded or no quality makes it fit.
+  /// data. Throws InputError if the file cannot be decoded (DecodePicture()) or no quality makes it
+  /// fit.
   void Pack(const std::vector<std::uint8_t>& file, const std::string& name, image_t* message);
 
   /// What people should know about the images that were packed so far, a line each; given once.
   std::vector<std::string> TakeNotes();
 
  private:
-  void Note(const std::string& note);
+  /// The first note of each kind is kept.
+  void Note(const std::string& kind, const std::string& note);
+  void NoteLarge();
+  void NotePixels(const ImageHeader& header, const Picture& picture, const std::string& name);
   bool PackUnchanged(const std::vector<std::uint8_t>& file, image_t* message);
+  void PackPng(const cv::Mat& image, image_t* message);
+  bool PackJpeg(const cv::Mat& image, image_t* message);
 
   ImagePackerOptions options_;
+  SixteenBitRange range_;
   std::vector<std::string> notes_;
-  std::vector<std::string> said_;
+  std::set<std::string> said_;
 };
 
 }  // namespace airdos

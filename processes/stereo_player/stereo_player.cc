@@ -94,6 +94,14 @@ bool StereoPlayer::IsCalibrationDue(std::int64_t utime) {
   return true;
 }
 
+void StereoPlayer::SetRangeFor(const std::vector<std::uint8_t>& file) {
+  if (is_range_known_) return;
+  const std::optional<ImageHeader> header = ReadImageHeader(file.data(), file.size());
+  if (!header || header->bits != 16) return;
+  packer_.SetSixteenBitRange(FindSixteenBitRange(*sequence_).value_or(SixteenBitRange()));
+  is_range_known_ = true;
+}
+
 Envelope StereoPlayer::Calibration(const Header& header) const {
   auto message = MessageOf<stereo_calibration_t>(header);
   FromStereoCamera(sequence_->camera(), &message);
@@ -111,6 +119,7 @@ StereoPlayer::Frame StereoPlayer::Load(std::size_t index) {
   const auto pack_image = [&](const char* channel, const std::vector<std::uint8_t>& file,
                               const std::string& name) {
     auto message = MessageOf<image_t>(frame.header);
+    SetRangeFor(file);
     packer_.Pack(file, name.empty() ? "frame " + std::to_string(index) + " for " + channel : name,
                  &message);
     messages.push_back(Pack(channel, message, name));

@@ -37,10 +37,13 @@ class StereoPlayer {
 
  private:
   bool IsCalibrationDue(std::int64_t utime);
+  /// The first 16-bit picture has the range of all of them looked up.
+  void SetRangeFor(const std::vector<std::uint8_t>& file);
 
   const StereoSequence* sequence_;
   std::int64_t session_;
   ImagePacker packer_;
+  bool is_range_known_ = false;
   std::optional<std::int64_t> calibration_utime_;  // when it was given last
 };
 

@@ -245,13 +245,13 @@ TEST_F(CheckFolderTest, InvertedMasks) {
     for (auto& rows : *people) rows.clear();
   }
   sequence_.Write(folder_);
-  ExpectOnly(Severity::kWarning, "masks.polarity", folder_.string());
+  ExpectOnly(Severity::kError, "masks.coverage", folder_.string());
 }
 
 TEST_F(CheckFolderTest, MasksThatDoNotFitTheKeypoints) {
   for (cv::Mat& mask : sequence_.masks) mask.setTo(0);
   sequence_.Write(folder_);
-  ExpectOnly(Severity::kWarning, "masks.empty", folder_.string());
+  ExpectOnly(Severity::kError, "masks.empty", folder_.string());
   for (cv::Mat& mask : sequence_.masks) cv::circle(mask, {160, 20}, 20, 255, cv::FILLED);
   sequence_.Write(folder_);
   ExpectOnly(Severity::kWarning, "masks.keypoints", folder_.string());
