@@ -125,7 +125,7 @@ TEST_F(LogRecorderTest, TheSummaryHasEveryChannelAndWhatIsMissing) {
   LogRecorder recorder(options_);
   TakeSeqs(channel::kCameraLeft, {0, 1, 4}, 7, &recorder);
   TakeSeqs(channel::kStatus, {0}, 7, &recorder);
-  Take({"a name that no log can hold", {1}}, &recorder);
+  Take({"a name\x7fthat no log can hold", {1}}, &recorder);
   const std::string text = recorder.Summary();
   const auto line_of = [&text](const std::string& start) {
     const std::size_t begin = text.find(start);

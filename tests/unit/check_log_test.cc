@@ -143,7 +143,7 @@ TEST_F(CheckLogTest, OrderRepetitionAndGaps) {
   messages_ = SoundMessages();
   messages_.erase(Find(channel::kPersonMask, 6));
   Expect(Severity::kWarning, "log.gap", "PERSON_MASK 7");
-  EXPECT_NE(Check().find("[log.count]"), std::string::npos) << Check();
+  EXPECT_NE(Check().find("[log.partners]"), std::string::npos) << Check();
   messages_ = SoundMessages();
   Change<image_t>(&*Find(channel::kCameraRight, 5), [](image_t* m) { m->utime += 1; });
   Expect(Severity::kError, "log.utime", "CAMERA_RIGHT 5");
