@@ -1,15 +1,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/check/stereo_matches.h"
+#include "common/map/map_export.h"
 #include "processes/frontend/input_watch.h"
 #include "processes/human_tracker/people_watch.h"
 #include "processes/node/own_output.h"
 #include "processes/node/partner_watch.h"
 #include "processes/node/stray_watch.h"
+#include "processes/optimizer/landmark_archive.h"
+#include "processes/optimizer/optimizer_messages.h"
 #include "processes/optimizer/optimizer_node.h"
 #include "tests/node/fake_nodes.h"
 #include "tests/node/frontend_messages.h"
@@ -469,6 +476,73 @@ TEST(UserCases, Case41KeypointsOfLeftAndRight) {
   EXPECT_EQ(WatchPeople(-6).find("left and right keypoints are exchanged: 30 of 30 people"), 0u);
   EXPECT_EQ(WatchPeople(0).find("left and right keypoints are the same"), 0u);
   EXPECT_EQ(WatchPeople(0, false).find("nobody in the right keypoints, 30 people"), 0u);
+}
+
+// ---- What others are told ----
+
+MapChanges::Landmark LandmarkAt(std::int64_t id, double x) {
+  return {LandmarkId{id}, {x, 2, 3}, 0.1, 4};
+}
+
+TEST(UserCases, CaseALateJoinerGetsTheMap) {
+  LandmarkArchive archive;
+  MapChanges changes;
+  for (std::int64_t id = 1; id <= 950; ++id) changes.landmarks.push_back(LandmarkAt(id, 1));
+  archive.Add(changes);
+  changes = MapChanges();
+  changes.landmarks = {LandmarkAt(10, 5)};
+  changes.removed = {LandmarkId{11}};
+  archive.Add(changes);
+  std::map<LandmarkId, double> heard;
+  const std::size_t num_frames = 1 + archive.size() / LandmarkArchive::kRepeatedPerFrame;
+  for (std::size_t k = 0; k < num_frames; ++k) {
+    const std::vector<MapChanges::Landmark> repeated = archive.NextRepeated();
+    EXPECT_LE(repeated.size(), LandmarkArchive::kRepeatedPerFrame);
+    for (const MapChanges::Landmark& landmark : repeated) heard[landmark.id] = landmark.p_W.x();
+  }
+  EXPECT_EQ(heard.size(), 949u);
+  EXPECT_EQ(heard.count(LandmarkId{11}), 0u);
+  EXPECT_EQ(heard.at(LandmarkId{10}), 5) << "as it was told last";
+  for (const map_update_t& part : ToMapUpdates({1, 2, 3}, changes, archive.NextRepeated())) {
+    EXPECT_EQ(Validate(part), "");
+    EXPECT_EQ(part.num_repeated, 200);
+    EXPECT_EQ(part.num_landmarks, 1);
+  }
+}
+
+TEST(UserCases, CaseTheMapThatIsToldAgainIsBounded) {
+  LandmarkArchive archive(100);
+  MapChanges changes;
+  EXPECT_EQ(archive.NextRepeated().size(), 0u);
+  for (std::int64_t id = 1; id <= 100; ++id) changes.landmarks.push_back(LandmarkAt(id, 1));
+  EXPECT_FALSE(archive.Add(changes));
+  EXPECT_EQ(archive.NextRepeated().size(), 100u) << "each once";
+  changes.landmarks = {LandmarkAt(101, 1)};
+  EXPECT_TRUE(archive.Add(changes));
+  changes.landmarks = {LandmarkAt(102, 1)};
+  EXPECT_FALSE(archive.Add(changes)) << "said once";
+  EXPECT_EQ(archive.size(), 100u);
+  EXPECT_EQ(archive.NextRepeated().front().id, LandmarkId{101}) << "it goes on where it was";
+}
+
+TEST(UserCases, Case86cTrajectoryFilesNeverGoBackInTime) {
+  FourDMap map;
+  for (const auto& [seq, utime] : std::vector<std::pair<std::int64_t, std::int64_t>>{
+           {0, 1000000}, {1, 1100000}, {2, 1000000}, {3, 1100000}, {4, 1200000}}) {
+    map.frames[FrameId{seq}].utime = utime;
+    map.frames[FrameId{seq}].live = Se3();
+  }
+  const std::string folder = testing::TempDir() + "airdos_user_cases_live";
+  ExportMap(map, folder);
+  std::ifstream file(folder + "/trajectory_live.tum");
+  std::string times;
+  for (std::string line; std::getline(file, line);) {
+    times += line[0] == '#' ? line + " " : line.substr(0, 4);
+  }
+  std::filesystem::remove_all(folder);
+  EXPECT_EQ(times,
+            "# left out: 2 poses whose time is not later than that of an image before them "
+            "1.001.101.20");
 }
 
 }  // namespace

@@ -217,10 +217,39 @@ TEST_F(UserCases, CaseHangUpIsIgnoredUnderNohup) {
   ASSERT_NO_FATAL_FAILURE(chain_->StartNode("airdos-frontend"));
   ChildProcess* frontend = chain_->process("airdos-frontend");
   frontend->Signal(SIGHUP);
-  DriveAll({});
-  for (const LogEvent& event : SampleEvents(0, 0)) Say(event);
+  const std::int64_t num_before = listener_->num_messages(channel::kStatus);
+  EXPECT_TRUE(listener_->HearUntil(
+      [&] { return listener_->num_messages(channel::kStatus) > num_before + 2; },
+      LiveChain::kStart_s))
+      << "it goes on";
   frontend->Signal(SIGTERM);
   EXPECT_EQ(frontend->Wait(LiveChain::kStart_s), 0);
+}
+
+// airdos-doctor and network_setup.sh --check, each in a network that is set up like this.
+TEST_F(UserCases, CaseDoctorAndNetworkSetupAgree) {
+  const std::string up = "ip link set lo up; ip link set lo multicast on";
+  const std::vector<std::pair<std::string, int>> networks = {
+      {":", 1},
+      {up, 1},
+      {up + "; ip route add 224.0.0.0/4 dev lo", 0},
+      {up + "; ip route add default dev lo", 0},
+      {up + "; ip route add 239.255.76.0/24 dev lo", 0},
+      {up + "; ip route add 224.0.0.0/4 dev lo; ip link set lo multicast off", 1}};
+  const std::string setup = std::string(AIRDOS_SOURCE_DIR) + "/launch_scripts/network_setup.sh";
+  const std::string doctor = std::string(AIRDOS_BINARY_DIR) +
+                             "/bin/airdos-doctor --round-trip never --listen-s 0.1 --run-dir " +
+                             folder_;
+  for (const auto& [network, expected] : networks) {
+    for (const std::string& command : {setup + " --check", doctor}) {
+      ChildProcess process({"unshare", "-n", "bash", "-c", network + "; " + command},
+                           folder_ + "network");
+      EXPECT_EQ(process.Wait(LiveChain::kStart_s), expected)
+          << network << "\n"
+          << command << "\n"
+          << process.Output() << process.Errors();
+    }
+  }
 }
 
 }  // namespace
