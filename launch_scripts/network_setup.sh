@@ -3,16 +3,19 @@
 #
 #   network_setup.sh                 loopback only: all processes on this machine
 #   network_setup.sh --interface IF  multicast through network interface IF, to spread processes over hosts (use ?ttl=1 in --lcm-url)
-#   network_setup.sh --check         changes nothing
+#   network_setup.sh --check         changes nothing; without --interface it looks at the one that LCM's messages go through,
+#                                    as airdos-doctor does, whose verdict is the same
 #
 # Three things: the interface is up and has its multicast flag, 224.0.0.0/4 has a route through it, and sockets may ask for a
-# receive buffer of 4 MiB (net.core.rmem_max), which lossless images need. Exit code 0: all is well (the buffer only warns);
-# 1: something is missing and was not or could not be mended; 2: wrong arguments. Nothing outlives a reboot.
+# receive buffer of 4 MiB (net.core.rmem_max), which lossless images need. Exit code 0: all is well (a buffer that takes messages
+# of 128 kB only warns); 1: something is missing and was not or could not be mended; 2: wrong arguments. Nothing outlives a reboot.
 # airdos-doctor looks at more: other runs on the port, a round trip, disk, lcm-spy.
 set -u
 
 readonly WANTED_RMEM_BYTES=4194304
-interface=lo
+readonly LEAST_RMEM_BYTES=131072
+readonly LCM_ADDRESS=239.255.76.67
+interface=
 check_only=false
 
 usage() { sed -n '2,/^set -u/{/^#/s/^# \{0,1\}//p}' "$0"; }
@@ -32,6 +35,10 @@ while [ $# -gt 0 ]; do
 done
 
 command -v ip >/dev/null || { echo "network_setup.sh: the program 'ip' is missing (package iproute2)" >&2; exit 1; }
+# Where the kernel sends LCM's messages, by whatever route; empty if nowhere.
+interface_in_use() { ip -4 -o route get "$LCM_ADDRESS" 2>/dev/null | sed -n 's/.* dev \([^ ]*\).*/\1/p'; }
+if [ -z "$interface" ] && $check_only; then interface=$(interface_in_use); fi
+interface=${interface:-lo}
 ip link show dev "$interface" >/dev/null 2>&1 ||
   { echo "network_setup.sh: there is no network interface '$interface'" >&2; exit 2; }
 
@@ -42,7 +49,10 @@ as_root() {
 has_flag() { ip link show dev "$interface" | head -n 1 | grep -q "[<,]$1[,>]"; }
 is_up() { has_flag UP; }
 is_multicast() { has_flag MULTICAST; }
-has_route() { ip -4 route show exact 224.0.0.0/4 | grep -q "dev $interface\b"; }
+has_route() {
+  if $check_only; then [ "$(interface_in_use)" = "$interface" ]; return; fi
+  ip -4 route show exact 224.0.0.0/4 | grep -q "dev $interface\b"
+}
 has_other_route() { ip -4 route show exact 224.0.0.0/4 | grep -qv "dev $interface\b"; }
 rmem_bytes() { cat /proc/sys/net/core/rmem_max 2>/dev/null || echo 0; }
 has_buffer() { [ "$(rmem_bytes)" -ge "$WANTED_RMEM_BYTES" ]; }
@@ -70,6 +80,10 @@ if has_buffer; then
   echo "ok       sockets may have a receive buffer of $WANTED_RMEM_BYTES bytes"
 elif ! $check_only && as_root sysctl -q -w net.core.rmem_max=$WANTED_RMEM_BYTES 2>/dev/null && has_buffer; then
   echo "set      sockets may have a receive buffer of $WANTED_RMEM_BYTES bytes"
+elif [ "$(rmem_bytes)" -lt "$LEAST_RMEM_BYTES" ]; then
+  echo "MISSING  receive buffers end at $(rmem_bytes) bytes: messages of up to 128 kB do not fit and are lost" \
+       "   (mend with: sudo sysctl -w net.core.rmem_max=$WANTED_RMEM_BYTES)"
+  missing=1
 else
   echo "warning  receive buffers end at $(rmem_bytes) bytes: images above 120 kB may be lost" \
        "(mend with: sudo sysctl -w net.core.rmem_max=$WANTED_RMEM_BYTES)"
