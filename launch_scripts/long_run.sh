@@ -54,7 +54,7 @@ max_growth_percent=$((minutes < 3 ? 30 : 10))
 loops=$((minutes * 60))
 
 mkdir -p "$run_dir"
-rm -f "$run_dir"/{state,memory.tsv,long_run.md,map.airdos}
+rm -f "$run_dir"/{memory.tsv,long_run.md}
 "$(dirname "$0")/run_live.sh" --data "$data" --loop "$loops" --pace realtime --run-dir "$run_dir" > "$run_dir/run_live.log" 2>&1 &
 live_pid=$!
 trap 'kill -TERM "$live_pid" 2> /dev/null || true' EXIT

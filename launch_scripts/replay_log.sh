@@ -1,23 +1,33 @@
 #!/bin/bash
 # Plays an LCM log into the processes that run_live.sh has started.
 #
-# Usage: launch_scripts/replay_log.sh FILE [--speed X] [--run FOLDER]
-#   FILE          LCM log; only what came from the camera is played
-#   --speed X     1 as recorded, 2 twice as fast, 0 as fast as possible (default 1)
-#   --run FOLDER  of which run (default logs/runs/latest)
-#   --help        this text
+# Usage: launch_scripts/replay_log.sh FILE [--speed X] [--run-dir FOLDER] [--no-check]
+#   FILE              LCM log; only what came from the camera is played
+#   --speed X         1 as recorded, 2 twice as fast, 0 as fast as possible (default 1)
+#   --run-dir FOLDER  of which run (default logs/runs/latest)
+#   --no-check        do not look at the log before it is played
+#   --help            this text
+#
+# Each play is a session of its own: the first of a run keeps the log's number and is lcm-logplayer's; since the processes drop what
+# they have worked on already, the next ones get new numbers, from airdos-stereo-player.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-log='' speed=1 run=$AIRDOS_RUNS/latest
+log='' speed=1 run_dir=$AIRDOS_RUNS/latest check=yes
 while (($# > 0)); do
   case $1 in
-    --speed | --run)
+    --speed)
       need_value "$@"
-      printf -v "${1#--}" '%s' "$2"
+      speed=$2
       shift
       ;;
+    --run-dir | --run)
+      need_value "$@"
+      run_dir=$2
+      shift
+      ;;
+    --no-check) check=no ;;
     --help | -h)
       print_help
       exit 0
@@ -33,10 +43,24 @@ done
 [[ -n $log ]] || die_usage "which log? (see --help)"
 [[ -f $log ]] || die_usage "no file '$log'"
 [[ $speed =~ ^[0-9]+(\.[0-9]+)?$ ]] || die_usage "--speed: not a number: '$speed'"
-[[ -r $run/state ]] || die_usage "--run: no run of run_live.sh in '$run'"
+[[ -r $run_dir/state ]] || die_usage "--run-dir: no run of run_live.sh in '$run_dir'"
 command -v lcm-logplayer > /dev/null || die "lcm-logplayer is missing: 'apt-get install liblcm-bin'"
+if [[ $check == yes && -x $AIRDOS_BIN/airdos-check ]]; then
+  "$AIRDOS_BIN/airdos-check" --quick "$log" > /dev/null ||
+    die_usage "'$log' cannot be used: 'airdos-check $log' says why, --no-check plays it all the same"
+fi
 
-enter_network "$(state_of pid "$run")"
-url=$(state_of url "$run")
-say "$log to $url at speed $speed"
-exec "${ENTER_NETWORK[@]}" lcm-logplayer -s "$speed" -e "$AIRDOS_CAMERA_CHANNELS" -l "$url" "$log"
+enter_network "$(state_of pid "$run_dir")"
+url=$(state_of url "$run_dir")
+played=$(state_of played "$run_dir")
+echo "played=$log" >> "$run_dir/state"
+if [[ -z $played ]]; then
+  say "$log to $url at speed $speed"
+  exec "${ENTER_NETWORK[@]}" lcm-logplayer -s "$speed" -e "$AIRDOS_CAMERA_CHANNELS" -l "$url" "$log"
+fi
+need_program airdos-stereo-player
+session=$(date +%s%6N)
+say "$log to $url at speed $speed, as session $session: these processes have worked on a log already"
+pace=(--pace realtime --rate "$speed")
+if [[ $speed =~ ^0+(\.0+)?$ ]]; then pace=(--pace lockstep); fi
+exec "${ENTER_NETWORK[@]}" "$AIRDOS_BIN/airdos-stereo-player" --log "$log" --session "$session" --no-check --lcm-url "$url" "${pace[@]}"

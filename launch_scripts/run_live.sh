@@ -9,13 +9,16 @@
 #   --pace lockstep|realtime
 #                         lockstep: nothing is lost; realtime: the newest image counts (default lockstep)
 #   --lcm-url URL         (default udpm://239.255.76.67:7667?ttl=0)
-#   --run-dir FOLDER      where logs and results go (default logs/runs/<time>; logs/runs/latest points there)
+#   --run-dir FOLDER      where logs and results go (default logs/runs/<time>); logs/runs/latest points there
+#   --force               have files in that folder replaced that no run wrote
+#   --no-check            do not look at the data set or log before it is played
 #   --host-network        run in this machine's own network instead of a namespace of its own
 #   --help                this text
 #
-# Without --data and --log it runs until Ctrl-C and waits for images. Each process' messages go to <run-dir>/<process>.log, its
-# configuration with all values in force to <run-dir>/<process>.yaml.
-# Exit 0 if all processes ended well.
+# Without --data and --log it runs until Ctrl-C and waits for images. Each process' messages go to <run-dir>/<process>.log (warnings
+# and errors are shown here, too), its configuration with all values in force to <run-dir>/<process>.yaml. At the end it says how
+# many frames got their pose from images, from people, or by prediction only.
+# Exit 0 if all processes ended well; 1 if one did not, or if no frame got a pose; 2 for a wrong option or input.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -27,7 +30,7 @@ readonly STOP_DEADLINE_S=20
 readonly IDLE_S=6
 readonly DRAIN_DEADLINE_S=600
 
-data='' loop=1 log='' speed=1 pace=lockstep url=$AIRDOS_DEFAULT_URL run_dir='' host_network=no is_inside=no
+data='' loop=1 log='' speed=1 pace=lockstep url=$AIRDOS_DEFAULT_URL run_dir='' host_network=no is_inside=no force=no check=yes
 original_arguments=("$@")
 while (($# > 0)); do
   case $1 in
@@ -38,6 +41,8 @@ while (($# > 0)); do
       shift
       ;;
     --host-network) host_network=yes ;;
+    --force) force=yes ;;
+    --no-check) check=no ;;
     --inside) is_inside=yes ;; # for the script's own use: the namespace is made
     --help | -h)
       print_help
@@ -61,14 +66,39 @@ if [[ -n $log ]]; then
   command -v lcm-logplayer > /dev/null || die "lcm-logplayer is missing: 'apt-get install liblcm-bin'"
 fi
 
+# check_input FILE: what is wrong with it is said before anything is started.
+check_input() {
+  local code=0
+  [[ $check == yes && -x $AIRDOS_BIN/airdos-check ]] || return 0
+  "$AIRDOS_BIN/airdos-check" --quick "$1" > "$run_dir/check.log" 2>&1 || code=$?
+  sed -n '/: warning: \|: error: /p' "$run_dir/check.log" >&2
+  if ((code == 1)); then die_usage "'$1' cannot be used (see above; --no-check plays it all the same)"; fi
+  if ((code != 0)); then die_usage "$(tail -n 1 "$run_dir/check.log")"; fi
+}
+
+# refuse_foreign_files: files of these names that no run wrote are the user's.
+refuse_foreign_files() {
+  local name
+  [[ $force == no && ! -e $run_dir/state ]] || return 0
+  for name in state check player "${PROCESSES[@]}"; do
+    [[ $name == state ]] || name=$name.log
+    [[ ! -e $run_dir/$name ]] || die_usage "--run-dir: $run_dir/$name is not of a run; --force replaces it"
+  done
+}
+
 if [[ $is_inside == no ]]; then
   if [[ -z $run_dir ]]; then
     run_dir=$AIRDOS_RUNS/$(date +%Y%m%d_%H%M%S)_$$
-    mkdir -p "$run_dir"
-    ln -sfn "$(basename "$run_dir")" "$AIRDOS_RUNS/latest"
     original_arguments+=(--run-dir "$run_dir")
   fi
-  mkdir -p "$run_dir"
+  mkdir -p "$run_dir" || die_usage "--run-dir: '$run_dir' cannot be made"
+  refuse_foreign_files
+  # Kept open by the processes too, so that it is free only when all of them have ended.
+  exec {run_lock}> "$run_dir/.airdos_run_live"
+  flock --nonblock "$run_lock" || die_usage "--run-dir: another run_live.sh is writing to $run_dir"
+  if [[ -n $log ]]; then check_input "$log"; fi # the player looks at what it plays itself
+  mkdir -p "$AIRDOS_RUNS"
+  ln -sfn "$(realpath "$run_dir")" "$AIRDOS_RUNS/latest"
   if [[ $host_network == yes ]]; then
     "$(dirname "$0")/network_setup.sh" --check || die "--host-network: the network is not fit for LCM (see above)"
   else
@@ -118,17 +148,34 @@ stop() {
   collect "$name"
 }
 
+# show_news: what the processes have newly warned of, or failed at.
+declare -A lines_shown=()
+show_news() {
+  local name first last
+  for name in player "${PROCESSES[@]}"; do
+    [[ -e $run_dir/$name.log ]] || continue
+    first=$((${lines_shown[$name]:-0} + 1))
+    last=$(wc -l < "$run_dir/$name.log")
+    ((last >= first)) || continue
+    lines_shown[$name]=$last
+    sed -n "$first,$last{/: warning: \\|: error: \\|: nothing on \\|: rejected /p}" "$run_dir/$name.log" >&2
+  done
+}
+
 # Sources first, the recorder last, so that it keeps what the others still say.
 finish() {
   local name bad=0
   for name in player "${PROCESSES[@]}"; do
     if [[ -n ${pids[$name]:-} ]]; then stop "$name"; fi
   done
+  show_news
+  sed -n 's/^airdos-optimizer: \(poses: .*\)/\1/p' "$run_dir/optimizer.log" 2> /dev/null | tail -n 1
   for name in "${!exit_codes[@]}"; do
     say "$name: exit code ${exit_codes[$name]}"
     ((exit_codes[$name] == 0)) || bad=1
   done
   say "results and logs: $run_dir"
+  if ((${exit_codes[player]:-0} == EXIT_BAD_INPUT)); then exit "$EXIT_BAD_INPUT"; fi
   exit "$bad"
 }
 
@@ -196,6 +243,7 @@ report_ended() {
 {
   echo "pid=$$"
   echo "url=$url"
+  [[ -z $log ]] || echo "played=$log"
 } > "$run_dir/state"
 
 arguments=(--lcm-url "$url" --pace "$pace")
@@ -208,23 +256,25 @@ start map-recorder "$AIRDOS_BIN/airdos-map-recorder" "${arguments[@]}" --set "ou
 for process in "${PROCESSES[@]}"; do wait_until_ready "$process"; done
 say "READY: ${PROCESSES[*]} on $url"
 if [[ $host_network == no ]]; then
-  say "their network: nsenter -t $$ -n -- COMMAND; or spy.sh --namespace $$, replay_log.sh LOG --run $run_dir"
+  say "their network: nsenter -t $$ -n -- COMMAND; or spy.sh --namespace $$, replay_log.sh LOG --run-dir $run_dir"
 fi
 
 if [[ -n $data ]]; then
   player_options=()
   if ((loop > 1)); then player_options=(--loop "$loop" --one-session --say-every 500); fi
+  if [[ $check == no ]]; then player_options+=(--no-check); fi
   start player "$AIRDOS_BIN/airdos-stereo-player" --data "$data" "${arguments[@]}" \
     --resolved-config "$run_dir/stereo_player.yaml" "${player_options[@]}"
 elif [[ -n $log ]]; then
   start player lcm-logplayer -s "$speed" -e "$AIRDOS_CAMERA_CHANNELS" -l "$url" "$log"
 fi
 while [[ $stopping == no ]]; do
+  show_news
   if [[ -n ${pids[player]:-} ]] && ! is_running player; then
     collect player
     if ((exit_codes[player] != 0)); then
       tail -n 3 "$run_dir/player.log" >&2
-      say "what is wrong with the input: $AIRDOS_BIN/airdos-check '${data:-$log}'" >&2
+      break
     fi
     say "everything has been sent; waiting for the processes"
     wait_until_idle

@@ -12,7 +12,7 @@ namespace airdos {
 void ReportNotes(const StereoSequence& sequence, FindingList* findings) {
   for (const std::string& note : sequence.notes()) {
     const std::size_t end = std::min(note.find(": "), note.find(" is not there"));
-    findings->Warn("folder.assumed", end == std::string::npos ? "" : note.substr(0, end),
+    findings->Warn(kAssumedKind, end == std::string::npos ? "" : note.substr(0, end),
                    end == std::string::npos ? note : note.substr(end + (note[end] == ':' ? 2 : 1)));
   }
 }

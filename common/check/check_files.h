@@ -8,7 +8,8 @@
 
 namespace airdos {
 
-/// What the reader assumed of a folder (StereoSequence::notes()), as warnings.
+/// What the reader assumed of a folder (StereoSequence::notes()), as warnings of this kind.
+inline constexpr char kAssumedKind[] = "folder.assumed";
 void ReportNotes(const StereoSequence& sequence, FindingList* findings);
 
 /// What lies in a folder like input and is not read (folder_survey.h), kind "folder.unread".

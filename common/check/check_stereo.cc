@@ -12,7 +12,6 @@ namespace {
 constexpr int kMaxCorners = 800;
 constexpr int kMinMatches = 40;        // fewer say nothing
 constexpr double kMinClearSign = 0.7;  // share of the matches that must agree on a sign
-}
 
 }  // namespace
 

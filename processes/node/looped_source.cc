@@ -36,6 +36,14 @@ void LoopedSource::Shift(Envelope* message) {
               message->payload.data(), message->payload.size());
 }
 
+std::vector<std::string> LoopedSource::TakeNotes() {
+  std::vector<std::string> notes;
+  for (const std::string& note : source_->TakeNotes()) {
+    if (said_.insert(note).second) notes.push_back(note);
+  }
+  return notes;
+}
+
 double LoopedSource::fraction_done() const {
   return (loop_ + source_->fraction_done()) / num_loops_;
 }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ class LoopedSource : public FrameSource {
 
   std::vector<Envelope> NextFrame() override;
   double fraction_done() const override;
-  std::vector<std::string> TakeNotes() override { return source_->TakeNotes(); }
+  /// Each once, however often it is played.
+  std::vector<std::string> TakeNotes() override;
 
  private:
   void Shift(Envelope* message);
@@ -37,6 +39,7 @@ class LoopedSource : public FrameSource {
   std::optional<Header> first_;
   Header last_;  // newest of the first time
   Header shift_;
+  std::set<std::string> said_;
 };
 
 }  // namespace airdos

@@ -5,6 +5,7 @@
 
 #include "common/util/output_files.h"
 #include "common/util/version.h"
+#include "processes/node/input_check.h"
 #include "processes/node/lcm_transport.h"
 #include "processes/node/log_source.h"
 #include "processes/node/process_cli.h"
@@ -18,6 +19,11 @@ int Play(const airdos::PlayerOptions& options, const airdos::CommonArguments& co
   airdos::InstallStopSignals();
   cv::setNumThreads(1);
   const airdos::OutputFiles outputs({options.write_log}, {{options.data}, common.force});
+  if (!options.check.is_off) {
+    airdos::CheckBeforeRun(options.data, options.check.calibration, [](const std::string& line) {
+      std::cerr << "airdos-stereo-player: " << line << std::endl;
+    });
+  }
   const std::int64_t session = options.session.value_or(airdos::WallClock_us());
   // Opened before anything is said, so that a wrong path is.
   std::unique_ptr<airdos::FrameSource> first = airdos::OpenPlayerSource(options, session);

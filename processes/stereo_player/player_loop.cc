@@ -60,7 +60,7 @@ std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std:
   const std::int64_t last = options.last.value_or(std::numeric_limits<std::int64_t>::max());
   if (std::filesystem::is_directory(options.data)) {
     return std::make_unique<DatasetSource>(options.data, options.first, last, session,
-                                           options.image);
+                                           options.image, options.check.calibration);
   }
   auto log = std::make_unique<LogSource>(options.data, options.first, last);
   // Unless asked for, a log is played as it is: its sessions are part of what others made of it.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "processes/node/input_check.h"
 #include "processes/node/process_cli.h"
 #include "processes/stereo_player/image_packer.h"
 #include "processes/stereo_player/lockstep_gate.h"
@@ -28,6 +29,7 @@ struct PlayerOptions {
   std::string write_log;  ///< file to write instead of publishing
   LockstepGateOptions gate;
   ImagePackerOptions image;
+  InputCheckOptions check;
 };
 
 /// The command line, and where it says nothing the configuration file.

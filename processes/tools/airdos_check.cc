@@ -1,14 +1,12 @@
 // airdos-check: whether a folder or a log can be used, before it is.
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "common/check/check_folder.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
 #include "common/util/output_files.h"
-#include "processes/node/check_log.h"
+#include "processes/node/input_check.h"
 #include "processes/node/program_cli.h"
 
 int main(int argc, char** argv) {
@@ -20,6 +18,10 @@ int main(int argc, char** argv) {
   bool force = false;
   airdos::CheckOptions options;
   const airdos::InputOptions input_options(&app);
+  bool is_quick = false;
+  app.add_flag("--quick", is_quick, "only what replay and player look at before they start");
+  app.add_flag("--all", options.all, "look at the pictures of all frames");
+  airdos::AddCalibrationOption(&app, &options.calibration);
   app.add_option("--max-frames", options.max_frames, "pictures are looked at in so many frames")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
@@ -33,12 +35,8 @@ int main(int argc, char** argv) {
   return airdos::RunProgram(argc, argv, &app, [&] {
     const std::string& input = input_options.path();
     const airdos::OutputFiles outputs({json_path}, {{input}, force});
-    airdos::FindingList findings;
-    if (std::filesystem::is_directory(input)) {
-      airdos::CheckFolder(input, options, &findings);
-    } else {
-      airdos::CheckLog(input, options, &findings);
-    }
+    if (is_quick) options.depth = airdos::CheckOptions::Depth::kQuick;
+    const airdos::FindingList findings = airdos::CheckInput(input, options);
     findings.Print(input, &std::cout);
     if (!json_path.empty()) airdos::WriteJson(findings.ToJson(input), json_path);
     return findings.has_errors() ? 1 : 0;

@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "processes/node/input_check.h"
 #include "processes/node/looped_source.h"
 #include "processes/node/process_cli.h"
 #include "processes/tools/replay.h"
@@ -30,6 +31,8 @@ int main(int argc, char** argv) {
   bool digest_only = false;
   setup.config_dir = airdos::ConfigFolder();
   const airdos::InputOptions input(&app);
+  airdos::InputCheckOptions check;
+  airdos::AddInputCheckOptions(&app, &check);
   airdos::AddFile("--out", &options.out_path, "log of what the processes publish", &app);
   app.add_flag("--all", options.writes_inputs, "have the inputs in that log as well");
   airdos::AddFolder("--run-dir", &setup.run_dir,
@@ -72,8 +75,16 @@ int main(int argc, char** argv) {
     cv::setNumThreads(1);
     const auto inputs =
         setup.from_features ? airdos::LogInputs::kFeatures : airdos::LogInputs::kImages;
-    const auto open = [&] { return airdos::OpenFrameSource(input.path(), first, last, inputs); };
+    const auto say = [](const std::string& line) {
+      std::cerr << "airdos-replay: " << line << std::endl;
+    };
+    if (!check.is_off && !setup.from_features)
+      airdos::CheckBeforeRun(input.path(), check.calibration, say);
+    const auto open = [&] {
+      return airdos::OpenFrameSource(input.path(), first, last, inputs, check.calibration);
+    };
     airdos::LoopedSource source(open, num_loops);
+    for (const std::string& note : source.TakeNotes()) say("note: " + note);
     if (!config_path.empty()) airdos::SetConfig(config_path, &setup);
     setup.rules.inputs = {input.path()};
     setup.outputs = {options.out_path, timing_path};
@@ -87,6 +98,8 @@ int main(int argc, char** argv) {
     if (digest) {  // which must not hide that something was rejected
       for (const std::string& remark : result.remarks) std::cerr << "note: " << remark << "\n";
     }
-    return 0;
+    const std::string why_in_vain = airdos::WhyInVain(result.tally);
+    if (!why_in_vain.empty()) say(why_in_vain);
+    return why_in_vain.empty() ? 0 : 1;
   });
 }

@@ -215,9 +215,11 @@ std::vector<ReplayNode> MakeReplayNodes(const ReplaySetup& setup) {
 }
 
 std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, std::int64_t first,
-                                             std::int64_t last, LogInputs inputs) {
+                                             std::int64_t last, LogInputs inputs,
+                                             const std::string& calibration) {
   if (std::filesystem::is_directory(path))
-    return std::make_unique<DatasetSource>(path, first, last, kSession, ImagePackerOptions());
+    return std::make_unique<DatasetSource>(path, first, last, kSession, ImagePackerOptions(),
+                                           calibration);
   return std::make_unique<LogSource>(path, first, last, inputs);
 }
 

@@ -49,11 +49,12 @@ ReplayNodes PrepareReplay(const ReplaySetup& setup);
 std::vector<ReplayNode> MakeReplayNodes(const ReplaySetup& setup);
 
 /// A log, or a folder with a data set, whose frames are published as airdos-stereo-player would.
-/// Only frames with first <= seq <= last. `inputs` is about logs. Throws InputError.
+/// Only frames with first <= seq <= last. `inputs` is about logs,
+/// `calibration` about folders (SequenceOptions). Throws InputError.
 std::unique_ptr<FrameSource> OpenFrameSource(
     const std::string& path, std::int64_t first = std::numeric_limits<std::int64_t>::min(),
     std::int64_t last = std::numeric_limits<std::int64_t>::max(),
-    LogInputs inputs = LogInputs::kImages);
+    LogInputs inputs = LogInputs::kImages, const std::string& calibration = "");
 
 /// Says on stderr how far a run is: a bar on a terminal, else one line every ten per cent.
 class ProgressBar {
