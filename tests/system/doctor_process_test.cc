@@ -210,12 +210,13 @@ TEST_F(DoctorProcessTest, BadArgumentsAreOneLineAndExit2) {
 
 TEST_F(DoctorProcessTest, CheckExitsWithOneOnErrors) {
   // The names of images do not match.
+  const fs::path data = folder_ / "data";
   for (const char* name : {"image_0/000000.png", "image_1/000001.png"}) {
-    fs::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name) << "x";
+    fs::create_directories((data / name).parent_path());
+    std::ofstream(data / name) << "x";
   }
-  const std::string json = (folder_ / "check.json").string();
-  EXPECT_EQ(Run("airdos-check", {folder_.string(), "--json", json}), 1) << errors_;
+  const std::string json = (folder_ / "check.json").string();  // not into the data set
+  EXPECT_EQ(Run("airdos-check", {data.string(), "--json", json}), 1) << errors_;
   ExpectLine("only on the left: '000000.png'; only on the right: '000001.png'");
   ExpectLine(": 1 errors, 0 warnings\n");
   std::ifstream file(json);
