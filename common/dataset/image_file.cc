@@ -1,11 +1,11 @@
 #include "common/dataset/image_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
+#include <cstdio>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
@@ -20,7 +20,8 @@ std::string WhyHeaderIsNone(const std::uint8_t* data, std::size_t size) {
   const std::string kind = FileKindOf(data, size);
   if (kind == "empty") return "is empty";
   if (kind == "a JPEG file" || kind == "a PNG file") return "cannot be decoded as an image";
-  return "is neither a JPEG nor a PNG file but " + kind;
+  const std::string neither = "is neither a JPEG nor a PNG file";
+  return kind == "a file of unknown kind" ? neither : neither + " but " + kind;
 }
 
 std::string WhyHeaderIsUnfit(const ImageHeader& header) {
