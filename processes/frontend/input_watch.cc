@@ -11,7 +11,7 @@ namespace {
 
 // To measure a pair takes about half as long as to track a frame.
 constexpr int kMaxCorners = 300;
-constexpr int kFirstMeasured = 2;  // pairs of the first ten, if they have corners
+constexpr int kFirstMeasured = 3;  // pairs of the first ten, if they have corners
 constexpr int kMeasureEvery = 100;
 
 constexpr double kNotRectified_px = 1.5;  // the front end searches a corner so near to its row
@@ -29,9 +29,10 @@ constexpr double kMaxPeriod_s = 2;
 constexpr double kMinUsualPeriod_s = 0.005;
 constexpr double kMaxUsualPeriod_s = 1;
 
-/// The pairs measured last must agree: one may have shown nothing but waves.
-double LesserOfLastTwo(const std::vector<double>& values) {
-  return std::min(values[values.size() - 2], values.back());
+/// Two of the three pairs measured last must agree: one may have shown nothing but waves, or been
+/// taken before the camera moved.
+double MiddleOfLastThree(const std::vector<double>& values) {
+  return Quantile({values.end() - kFirstMeasured, values.end()}, 0.5);
 }
 
 }  // namespace
@@ -82,8 +83,8 @@ void InputWatch::AddPair(const cv::Mat& left, const cv::Mat& right) {
 }
 
 void InputWatch::JudgePairs() {
-  const double error_px = LesserOfLastTwo(row_errors_px_);
-  const double share_negative = LesserOfLastTwo(negative_shares_);
+  const double error_px = MiddleOfLastThree(row_errors_px_);
+  const double share_negative = MiddleOfLastThree(negative_shares_);
   row_errors_px_.erase(row_errors_px_.begin());
   negative_shares_.erase(negative_shares_.begin());
   if (!is_exchange_said_ && share_negative > kMinExchanged) {

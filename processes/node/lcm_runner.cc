@@ -318,6 +318,7 @@ void LcmRunner::SayCounters() {
   const FrameCounters& frames = node_->frames();
   Say("stopped; frames done " + std::to_string(frames.num_done) + ", incomplete " +
       std::to_string(frames.num_incomplete) + ", skipped " + std::to_string(frames.num_skipped));
+  if (!node_->summary().empty()) Say(node_->summary());
   std::ostringstream latency;
   latency << std::fixed << std::setprecision(1) << "latency p50 "
           << long_latency_ms_.Percentile(0.5) << " ms, p99 " << long_latency_ms_.Percentile(0.99)

@@ -77,6 +77,10 @@ class Node {
   /// No more will come: writes what is only written at the end. Throws InputError if it cannot; a
   /// destructor could only mumble it.
   virtual void Finish() {}
+  /// What is to be said of the whole run at its end; empty if nothing.
+  virtual std::string summary() const { return ""; }
+  /// Why the whole run was in vain, for the exit code; empty where it was not, or had no frame.
+  virtual std::string why_in_vain() const { return ""; }
 
   /// What was published since the last call, in order.
   std::vector<Envelope> TakeOutput();

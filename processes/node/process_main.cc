@@ -29,7 +29,9 @@ int Run(const ProcessInfo& info, const CommonArguments& arguments, LcmRunnerOpti
             << " config " << arguments.config_file << std::endl;
   runner.Run();
   node->Finish();
-  return runner.has_refused() ? 1 : 0;
+  const std::string why_in_vain = node->why_in_vain();
+  if (!why_in_vain.empty()) std::cerr << info.program << ": " << why_in_vain << std::endl;
+  return runner.has_refused() || !why_in_vain.empty() ? 1 : 0;
 }
 
 }  // namespace

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "airdos/state_estimate_t.hpp"
-#include "airdos/static_features_t.hpp"
 #include "processes/node/channels.h"
 #include "processes/node/codec.h"
 
@@ -23,21 +21,28 @@ bool HasPose(const state_estimate_t& estimate) {
 void RunTally::Take(const std::string& channel, const void* data, std::size_t size) {
   if (channel == channel::kStaticFeatures) {
     static_features_t features = {};
-    if (!Decode(data, size, &features) || features.num_features == 0) return;
-    counts_.num_static_features += features.num_features;
-    with_features_.insert({features.session, features.seq});
-    if (with_features_.size() > kMaxOpenFrames) with_features_.erase(with_features_.begin());
+    if (Decode(data, size, &features)) Take(features);
   } else if (channel == channel::kStateEstimate) {
     state_estimate_t estimate = {};
-    if (!Decode(data, size, &estimate)) return;
-    // The optimizer counts no observations in its first frame: it has no map yet.
-    const bool has_features = with_features_.erase({estimate.session, estimate.seq}) > 0;
-    const bool has_people = estimate.trusted == state_estimate_t::TRUSTED_WITH_PEOPLE;
-    Add(!HasPose(estimate)                                     ? Source::kNone
-        : has_features || estimate.num_static_observations > 0 ? Source::kImages
-        : has_people                                           ? Source::kPeople
-                                                               : Source::kPrediction);
+    if (Decode(data, size, &estimate)) Take(estimate);
   }
+}
+
+void RunTally::Take(const static_features_t& features) {
+  if (features.num_features == 0) return;
+  counts_.num_static_features += features.num_features;
+  with_features_.insert({features.session, features.seq});
+  if (with_features_.size() > kMaxOpenFrames) with_features_.erase(with_features_.begin());
+}
+
+void RunTally::Take(const state_estimate_t& estimate) {
+  // The optimizer counts no observations in its first frame: it has no map yet.
+  const bool has_features = with_features_.erase({estimate.session, estimate.seq}) > 0;
+  const bool has_people = estimate.trusted == state_estimate_t::TRUSTED_WITH_PEOPLE;
+  Add(!HasPose(estimate)                                     ? Source::kNone
+      : has_features || estimate.num_static_observations > 0 ? Source::kImages
+      : has_people                                           ? Source::kPeople
+                                                             : Source::kPrediction);
 }
 
 void RunTally::Add(Source source) {

@@ -7,6 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "airdos/state_estimate_t.hpp"
+#include "airdos/static_features_t.hpp"
+
 namespace airdos {
 
 /// Where the poses of a run came from, frame by frame: what is said at its end, and what its exit
@@ -25,6 +28,8 @@ class RunTally {
   };
 
   void Take(const std::string& channel, const void* data, std::size_t size);
+  void Take(const static_features_t& features);
+  void Take(const state_estimate_t& estimate);
   Counts Count() const;
 
  private:

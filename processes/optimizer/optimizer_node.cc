@@ -66,6 +66,8 @@ void OptimizerNode::ProcessFrame(const Header& header, OptimizerInputs inputs) {
     }
   }
   Publish(channel::kStateEstimate, answer.state);
+  if (inputs.features) tally_.Take(*inputs.features);
+  tally_.Take(answer.state);
   if (archive_.Add(answer.changes)) {
     Warn("the map has more than " + std::to_string(LandmarkArchive::kMaxLandmarks) +
          " landmarks: the oldest are not told again to who joins the bus late; the recorder has "
@@ -74,6 +76,20 @@ void OptimizerNode::ProcessFrame(const Header& header, OptimizerInputs inputs) {
   for (const map_update_t& part : ToMapUpdates(header, answer.changes, archive_.NextRepeated())) {
     Publish(channel::kMapUpdate, part);
   }
+}
+
+std::string OptimizerNode::summary() const {
+  const RunTally::Counts counts = tally_.Count();
+  return counts.num_frames == 0 ? "" : "poses: " + ToText(counts);
+}
+
+std::string OptimizerNode::why_in_vain() const {
+  const std::int64_t num_incomplete = frames().num_incomplete;
+  if (frames().num_done == 0 && num_incomplete > 0) {
+    return "none of " + std::to_string(num_incomplete) +
+           " frames has a pose: no CALIBRATION came for their session";
+  }
+  return WhyInVain(tally_.Count());
 }
 
 FrameResult OptimizerNode::Adjust(const Header& header, const OptimizerInputs& inputs) {

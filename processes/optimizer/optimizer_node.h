@@ -3,12 +3,14 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "airdos/human_observations_t.hpp"
 #include "airdos/static_features_t.hpp"
 #include "common/config/config_reader.h"
 #include "common/optimization/sliding_window.h"
 #include "processes/node/frame_node.h"
+#include "processes/node/run_tally.h"
 #include "processes/optimizer/landmark_archive.h"
 #include "processes/optimizer/optimizer_options.h"
 
@@ -30,6 +32,10 @@ class OptimizerNode final : public FrameNode<OptimizerInputs> {
  public:
   explicit OptimizerNode(const OptimizerOptions& options);
 
+  /// How many frames have a pose, and from where.
+  std::string summary() const override;
+  std::string why_in_vain() const override;
+
  private:
   void StartSession(const Header& header) override;
   void ProcessFrame(const Header& header, OptimizerInputs inputs) override;
@@ -37,6 +43,7 @@ class OptimizerNode final : public FrameNode<OptimizerInputs> {
 
   OptimizerOptions options_;
   std::unique_ptr<SlidingWindowOptimizer> window_;  // of the session; null before its first frame
+  RunTally tally_;                                  // of all sessions
   LandmarkArchive archive_;                         // of the session
   std::optional<std::int64_t> newest_utime_;        // of the session, of a frame that has a pose
 };

@@ -13,7 +13,7 @@
 #include "common/evaluation/help_curve.h"
 #include "common/evaluation/people_files.h"
 #include "common/evaluation/speed_report.h"
-#include "common/evaluation/trajectory.h"
+#include "common/evaluation/trajectory_file.h"
 #include "common/map/four_d_map.h"
 #include "common/map/map_export.h"
 #include "common/map/map_file.h"
