@@ -88,7 +88,7 @@ void CheckFrames(const CheckedInput& input, const CheckOptions& options, Finding
 
   StereoCheck stereo(input.camera());
   CheckPictures(input, options, &stereo, findings);
-  constexpr double kDoubtfulRowsPx = 0.6;
+  constexpr double kDoubtfulRowsPx = 0.4;
   constexpr std::size_t kPlaces = 5;
   const bool may_be_shifted = !options.is_quick() || stereo.row_error_px() > kDoubtfulRowsPx;
   if (may_be_shifted && CheckShift(input, kPlaces, findings)) stereo.SetShiftKnown();

@@ -7,6 +7,9 @@
 
 namespace airdos {
 
+/// Kind of the finding that bytes of a log are damaged.
+inline constexpr char kLogDamagedKind[] = "log.damaged";
+
 /// Checks the input channels of an event log: that every message decodes and makes sense, is small
 /// enough to travel, comes in order and without gaps, that each image has its partners (LogPairing)
 /// and a calibration before it, that sizes and capture times are possible, and then what it shows

@@ -3,6 +3,7 @@
 
 #include "common/check/check_stereo.h"
 #include "processes/node/channels.h"
+#include "processes/node/check_log.h"
 #include "processes/node/check_log_survey.h"
 #include "processes/node/check_log_times.h"
 
@@ -44,7 +45,7 @@ void LogSurvey::ReportExtent(FindingList* findings) const {
                        Megabytes(num_bytes_) + "; airdos-check looks at all");
   }
   if (num_bytes_skipped_ > 0 || num_lost_ > 0) {
-    findings->Fail("log.damaged", path_,
+    findings->Fail(kLogDamagedKind, path_,
                    std::to_string(num_bytes_skipped_) + " bytes are damaged, about " +
                        std::to_string(num_lost_) + " events lost");
   }

@@ -1,6 +1,8 @@
 #include "processes/node/input_check.h"
 
+#include <cstddef>
 #include <filesystem>
+#include <vector>
 
 #include "common/check/check_files.h"
 #include "common/check/check_folder.h"
@@ -14,7 +16,7 @@ std::string Text(const std::string& path, const Finding& finding) {
   return (finding.where.empty() ? path : finding.where) + ": " + finding.what;
 }
 
-std::string HowToGoOn(const std::string& path, int num_errors) {
+std::string HowToGoOn(const std::string& path, std::size_t num_errors) {
   const std::string more =
       num_errors > 1 ? " (and " + std::to_string(num_errors - 1) + " more errors)" : "";
   return more + "; 'airdos-check " + path + "' says more, --no-check goes on all the same";
@@ -38,15 +40,21 @@ void CheckBeforeRun(const std::string& path, const std::string& calibration,
   options.depth = CheckOptions::Depth::kQuick;
   options.calibration = calibration;
   const FindingList findings = CheckInput(path, options);
-  const Finding* first_error = nullptr;
+  std::vector<std::string> errors;
+  std::vector<std::string> warnings;
   for (const Finding& finding : findings.findings()) {
-    // What was assumed the source says itself, checked or not.
-    const bool is_new = finding.kind != kAssumedKind;
-    if (finding.severity == Severity::kWarning && is_new) say("warning: " + Text(path, finding));
-    if (finding.severity == Severity::kError && first_error == nullptr) first_error = &finding;
+    // What was assumed the source says itself, checked or not. And of a log that is damaged every
+    // event that is whole is worth playing: a recording that a power cut ended, say.
+    const bool is_known = finding.kind == kAssumedKind;
+    const bool is_survived = finding.kind == kLogDamagedKind;
+    if (finding.severity == Severity::kError && !is_survived) {
+      errors.push_back(Text(path, finding));
+    } else if (finding.severity != Severity::kNote && !is_known) {
+      warnings.push_back("warning: " + Text(path, finding));
+    }
   }
-  if (first_error == nullptr) return;
-  throw InputError(Text(path, *first_error) + HowToGoOn(path, findings.count(Severity::kError)));
+  if (!errors.empty()) throw InputError(errors[0] + HowToGoOn(path, errors.size()));
+  for (const std::string& warning : warnings) say(warning);
 }
 
 void AddCalibrationOption(CLI::App* app, std::string* calibration) {

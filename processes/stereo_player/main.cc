@@ -15,19 +15,22 @@
 
 namespace {
 
+void Check(const airdos::PlayerOptions& options) {
+  if (options.check.is_off) return;
+  airdos::CheckBeforeRun(options.data, options.check.calibration, [](const std::string& line) {
+    std::cerr << "airdos-stereo-player: " << line << std::endl;
+  });
+}
+
 int Play(const airdos::PlayerOptions& options, const airdos::CommonArguments& common) {
   airdos::InstallStopSignals();
   cv::setNumThreads(1);
   const airdos::OutputFiles outputs({options.write_log}, {{options.data}, common.force});
-  if (!options.check.is_off) {
-    airdos::CheckBeforeRun(options.data, options.check.calibration, [](const std::string& line) {
-      std::cerr << "airdos-stereo-player: " << line << std::endl;
-    });
-  }
   const std::int64_t session = options.session.value_or(airdos::WallClock_us());
   // Opened before anything is said, so that a wrong path is.
   std::unique_ptr<airdos::FrameSource> first = airdos::OpenPlayerSource(options, session);
   if (!options.write_log.empty()) {
+    Check(options);
     airdos::WriteLog(options.write_log, first.get(), &std::cerr);
     return 0;
   }
@@ -36,6 +39,7 @@ int Play(const airdos::PlayerOptions& options, const airdos::CommonArguments& co
                              : airdos::OpenPlayerSource(options, session + num_sessions);
   };
   airdos::LcmTransport transport(common.lcm_url);
+  Check(options);
   airdos::PlayerLoop loop(options, open, &transport, &std::cerr);
   std::cout << "airdos-stereo-player READY version " << airdos::kVersion << " url "
             << common.lcm_url << " config " << common.config_file << std::endl;

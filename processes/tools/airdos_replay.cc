@@ -6,6 +6,7 @@
 #include <opencv2/core/utility.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "processes/node/input_check.h"
 #include "processes/node/looped_source.h"
@@ -78,17 +79,22 @@ int main(int argc, char** argv) {
     const auto say = [](const std::string& line) {
       std::cerr << "airdos-replay: " << line << std::endl;
     };
-    if (!check.is_off && !setup.from_features)
-      airdos::CheckBeforeRun(input.path(), check.calibration, say);
     const auto open = [&] {
       return airdos::OpenFrameSource(input.path(), first, last, inputs, check.calibration);
     };
     airdos::LoopedSource source(open, num_loops);
-    for (const std::string& note : source.TakeNotes()) say("note: " + note);
+    // Said once everything else is known to be right.
+    std::vector<std::string> remarks;
+    for (const std::string& note : source.TakeNotes()) remarks.push_back("note: " + note);
+    if (!check.is_off && !setup.from_features) {
+      airdos::CheckBeforeRun(input.path(), check.calibration,
+                             [&](const std::string& line) { remarks.push_back(line); });
+    }
     if (!config_path.empty()) airdos::SetConfig(config_path, &setup);
     setup.rules.inputs = {input.path()};
     setup.outputs = {options.out_path, timing_path};
     const airdos::ReplayNodes replay = airdos::PrepareReplay(setup);
+    for (const std::string& remark : remarks) say(remark);
     options.is_parallel = threads == "auto" && std::thread::hardware_concurrency() > 1;
     airdos::ProgressBar bar;
     if (!no_progress) options.on_progress = [&bar](double fraction) { bar.Show(fraction); };

@@ -122,7 +122,8 @@ TEST(FrontendNode, ACorruptJpegIsCountedAndTheFrameCoasts) {
   ASSERT_EQ(output.size(), 1u);
   EXPECT_EQ(output[0].tracking_state, kCoasting);
   EXPECT_EQ(node.channels().at(channel::kCameraLeft).num_rejected, 1);
-  EXPECT_EQ(node.channels().at(channel::kCameraLeft).last_reject, "the image does not decode");
+  EXPECT_EQ(node.channels().at(channel::kCameraLeft).last_reject,
+            "the image is neither a JPEG nor a PNG file");
   EXPECT_EQ(node.channels().at(channel::kCameraRight).num_rejected, 0);
 }
 

@@ -533,7 +533,7 @@ TEST(UserCases, Case86cTrajectoryFilesNeverGoBackInTime) {
     map.frames[FrameId{seq}].live = Se3();
   }
   const std::string folder = testing::TempDir() + "airdos_user_cases_live";
-  ExportMap(map, folder);
+  ExportMap(map, "map.airdos", folder, /*force=*/false, /*num_replaced=*/nullptr);
   std::ifstream file(folder + "/trajectory_live.tum");
   std::string times;
   for (std::string line; std::getline(file, line);) {

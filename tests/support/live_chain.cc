@@ -195,7 +195,7 @@ void LiveChain::StartNodes() {
 
 ChildProcess* LiveChain::StartPlayer(const std::string& data,
                                      const std::vector<std::string>& arguments) {
-  std::vector<std::string> all{"--data", data};
+  std::vector<std::string> all{"--data", data, "--no-check"};  // faults are played on purpose
   all.insert(all.end(), arguments.begin(), arguments.end());
   return Start("airdos-stereo-player", all);
 }
@@ -204,7 +204,9 @@ void LiveChain::StopNodes() {
   for (const std::string& program : NodePrograms()) {
     if (processes_.count(program) == 0) continue;
     process(program)->Signal(SIGINT);
-    EXPECT_EQ(process(program)->Wait(kStart_s), 0) << program << ": " << Errors(program);
+    const bool is_in_vain = is_in_vain_ && program == "airdos-optimizer";
+    EXPECT_EQ(process(program)->Wait(kStart_s), is_in_vain ? 1 : 0)
+        << program << ": " << Errors(program);
   }
 }
 
@@ -229,7 +231,7 @@ std::int64_t LiveChain::NumMissing(const std::string& program, const std::string
 std::string ReplayDigests(const std::string& log, const std::string& folder) {
   ChildProcess replay(
       {std::string(AIRDOS_BINARY_DIR) + "/bin/airdos-replay", log, "--out", folder + "replayed.lcm",
-       "--run-dir", folder + "map_replayed", "--no-progress"},
+       "--run-dir", folder + "map_replayed", "--no-progress", "--no-check"},
       folder + "airdos-replay");
   EXPECT_EQ(replay.Wait(LiveChain::kRun_s), 0) << replay.Errors();
   return FormatDigests(DigestLog(folder + "replayed.lcm"));

@@ -105,6 +105,8 @@ class LiveChain {
                             const std::vector<std::string>& arguments = {});
   /// Ends the nodes in order, the recorder last; each must end with code 0.
   void StopNodes();
+  /// No frame will get a pose that means anything, and the optimizer says so by its exit code.
+  void ExpectInVain() { is_in_vain_ = true; }
 
   ChildProcess* process(const std::string& program) { return processes_.at(program).get(); }
   /// What a process has said since it was started last.
@@ -116,6 +118,7 @@ class LiveChain {
   const std::string& folder() const { return folder_; }
 
  private:
+  bool is_in_vain_ = false;
   std::string folder_;
   std::string url_;
   std::vector<std::string> node_arguments_;

@@ -29,6 +29,8 @@ constexpr int kNumFrames = 8;
 constexpr int kMessagesOfFrame = 5;
 const std::string kBin = std::string(AIRDOS_BINARY_DIR) + "/bin/";
 
+constexpr int kInVain = 1;  // exit code
+
 /// What airdos-replay and airdos-stereo-player make of a log in which something is wrong.
 class DamagedLogTest : public testing::Test {
  protected:
@@ -100,14 +102,17 @@ class DamagedLogTest : public testing::Test {
         arguments, (folder_ / (program + std::to_string(num_run_++))).string());
   }
   /// What airdos-replay says of the log; it must come to an end by itself.
-  std::string Replayed(int exit_code = 0) {
-    const auto replay = Run("airdos-replay", {log_, "--no-progress", "--run-dir", folder_ / "run"});
+  /// Its images are blank, so the poses mean nothing, and it says so.
+  std::string Replayed(int exit_code = kInVain, const std::string& check = "--no-check") {
+    std::vector<std::string> arguments{log_, "--no-progress", "--run-dir", folder_ / "run"};
+    if (!check.empty()) arguments.push_back(check);
+    const auto replay = Run("airdos-replay", arguments);
     EXPECT_EQ(replay->Wait(kDeadline_s), exit_code) << replay->Errors();
     return replay->Output() + replay->Errors();
   }
   /// What the player says, without anybody to wait for, in a network of its own.
   std::string Played(const std::vector<std::string>& more = {}, int exit_code = 0) {
-    std::vector<std::string> arguments{"--data", log_, "--wait-for", "none"};
+    std::vector<std::string> arguments{"--data", log_, "--wait-for", "none", "--no-check"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const auto player = Run("airdos-stereo-player", arguments);
     EXPECT_EQ(player->Wait(kDeadline_s), exit_code) << player->Errors();
@@ -160,15 +165,16 @@ TEST_F(DamagedLogTest, ALogOfOtherPeopleIsOneLineAndExit2) {
     EventLogWriter writer(log_);
     for (int i = 0; i < 5; ++i) writer.Append(i, "WEATHER", "rain", 4);
   }
-  ExpectUnusable("holds no message for the processes");
+  ExpectUnusable("no message on CAMERA_LEFT");
 }
 
 TEST_F(DamagedLogTest, ACutEndCostsOneEvent) {
   WriteLog();
   const std::string bytes = Bytes();
   SetBytes(bytes.substr(0, bytes.size() - 10));
-  const std::string text = Replayed();
+  const std::string text = Replayed(kInVain, /*check=*/"");
   ExpectSaid(text, "frames: 8, with a pose: 8");
+  ExpectSaid(text, "warning: " + log_ + ": 74 bytes are damaged, about 1 events lost");
   ExpectSaid(text, "in.lcm: 1 events lost to damage");
   ExpectSaid(text, "frontend: PERSON_MASK: 1 missing");
 }
@@ -226,6 +232,17 @@ TEST_F(DamagedLogTest, ThePlayerSaysWhatWasLostAndWritesTheRest) {
   const std::string text = Played({"--write-log", written});
   ExpectSaid(text, "1 events lost to damage");
   ExpectSaid(text, std::to_string(kNumFrames * kMessagesOfFrame) + " messages");
+}
+
+TEST_F(DamagedLogTest, TypesThatAreWrongAreSaidBeforeARun) {
+  WriteLog();
+  std::string bytes = Bytes();
+  bytes[EventAt(bytes, channel::kPersonMask, 0) + 28 + std::string(channel::kPersonMask).size()] ^=
+      0x55;
+  SetBytes(bytes);
+  const std::string text = Replayed(2, /*check=*/"");
+  ExpectSaid(text, "a message on PERSON_MASK has type fingerprint 0x");
+  ExpectSaid(text, "--no-check goes on all the same");
 }
 
 /// Capture times that nobody may wait for: the log itself is whole.

@@ -112,6 +112,7 @@ TEST_F(UserCases, CaseC20TheRightCameraOfAnOwnDriverCountsFromAnotherNumber) {
                                    LiveChain::kRun_s))
       << chain_->AllErrors();
   EXPECT_EQ(listener_->states().size(), static_cast<std::size_t>(kLast + 1));
+  chain_->ExpectInVain();
   StopAndHear();
   for (const char* name : {"trajectory.tum", "trajectory_live.tum"}) {
     const std::vector<double> times_s = TimesOf(folder_ + "map/" + name);

@@ -101,7 +101,7 @@ TEST_F(HostileFilesTest, AFileThatIsNoImageFile) {
 
 TEST_F(HostileFilesTest, AnImageThatClaimsFourGigapixels) {
   std::string png("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\xff\xff\0\0\xff\xff\x8\0\0\0\0", 29);
-  png += std::string(40, '\0');
+  png += std::string(40, '\0') + std::string("\0\0\0\0IEND\xae\x42\x60\x82", 12);
   const std::string path = Write("bomb.png", png);
   ExpectRefused("cannot be decoded", [&] { ReadImageSize(path); });
 }
