@@ -71,6 +71,7 @@ configurations_are_read_from_there() {
     process=$(basename "$file" .yaml)
     arguments=(--lcm-url memq://) code=0
     if [[ $process == stereo_player ]]; then arguments+=(--data "$work"); fi
+    if [[ $process == map_recorder ]]; then arguments+=(--run-dir "$work/map"); fi
     "$prefix/bin/airdos-${process//_/-}" "${arguments[@]}" > "$work/out" 2>&1 || code=$?
     ((code == 2)) || fail "$process: exit code $code, not 2: $(cat "$work/out")"
     grep -qF "$file" "$work/out" || fail "$process does not read $file: $(cat "$work/out")"
