@@ -66,7 +66,7 @@ done < <(printf '%s\n' "${!folder_of[@]}" | sort)
 # run_one NAME MODE: the axes come from the run with masks, if that is another one.
 run_one() {
   local name=$1 mode=$2 run=$run_dir/$1/$2 axes=auto reference=$run_dir/$1/mask_only/evaluation.json
-  replay_sequence "$name, $mode" "${folder_of[$name]}" "$run" --people "$mode" "${replay_options[@]}"
+  replay_sequence "$name, $mode" "${folder_of[$name]}" "$run" --calibration tartanair-shibuya --people "$mode" "${replay_options[@]}"
   [[ -s $run/ground_truth.tum ]] || die "$name: no ground truth (gt_pose.txt)"
   if [[ $mode != mask_only ]]; then
     [[ -e $reference ]] || die "$name, $mode: no figures, because the run with masks has none"

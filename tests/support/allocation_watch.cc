@@ -13,7 +13,13 @@ void* operator new(std::size_t size) {
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
+// std::stable_sort() takes its buffer so; whoever frees it must be of the same kind.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  if (size > largest_allocation) largest_allocation = size;
+  return std::malloc(size);
+}
 void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace airdos {

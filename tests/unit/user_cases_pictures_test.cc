@@ -281,7 +281,7 @@ TEST_F(UserCases, Case57bOneImageOfAnotherSizeAmongMany) {
   Expect(Severity::kError, "images.size", "image_0/000005.png", "0.5 times as large");
 }
 
-TEST_F(UserCases, Case58FilesThatAreCutShort) {
+TEST_F(UserCases, Case58And58dFilesThatAreCutShort) {
   for (const char* ending : {".jpg", ".png"}) {
     sequence_.image_ending = ending;
     sequence_.Write(folder_);
