@@ -123,8 +123,8 @@ OutputFolder::OutputFolder(const std::string& path, const OutputRules& rules)
     list_ = ReadList(path_, &process);
     const std::optional<FileStamp> stamp = StampOf(PathOf(kListName));
     if (!stamp) throw InputError(PathOf(kListName) + ": is no file; remove it");
-    Append((stamp->num_bytes == 0 ? kHead : "") + std::string(kProcess) +
-           std::to_string(getpid()) + "\n");
+    Append((stamp->num_bytes == 0 ? kHead : "") + std::string(kProcess) + std::to_string(getpid()) +
+           "\n");
   } catch (...) {
     if (list_file_ >= 0) close(list_file_);
     if (is_new_) rmdir(path_.c_str());

@@ -100,8 +100,7 @@ TEST(ValidateTest, Mask) {
 TEST(ValidateTest, StaticFeatures) {
   using M = static_features_t;
   ExpectReject<M>("tracking_state -1", [](M* m) { m->tracking_state = -1; });
-  ExpectReject<M>("where nothing was tracked",
-                  [](M* m) { m->tracking_state = M::STATE_INVALID; });
+  ExpectReject<M>("where nothing was tracked", [](M* m) { m->tracking_state = M::STATE_INVALID; });
   ExpectReject<M>("tracking_state 5", [](M* m) { m->tracking_state = 5; });
   ExpectReject<M>("position_O_C nan", [](M* m) { m->position_O_C[2] = kNan; });
   ExpectReject<M>("orientation_O_C 1.1", [](M* m) { m->orientation_O_C[0] = 1.1; });

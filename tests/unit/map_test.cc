@@ -310,7 +310,8 @@ TEST(TorsoPoseTest, LooksWhereThePersonLooks) {
 TEST_F(MapTest, ExportsEverything) {
   WriteSmallMap(path_);
   MapFileSummary summary;
-  const std::vector<std::string> paths = ExportMap(ReadFourDMap(path_, &summary), path_, folder_ + "/out", false, nullptr);
+  const std::vector<std::string> paths =
+      ExportMap(ReadFourDMap(path_, &summary), path_, folder_ + "/out", false, nullptr);
   EXPECT_EQ(paths.size(), 7u);
   for (const std::string& path : paths) EXPECT_TRUE(fs::exists(path)) << path;
   const std::string out = folder_ + "/out/";
