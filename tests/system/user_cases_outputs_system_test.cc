@@ -43,12 +43,13 @@ class UserCases : public testing::Test {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   }
-  /// The first frames of the sample log.
+  /// The first events of the sample log, or all of them if it has fewer.
   std::string WriteLog(const std::string& name, int num_events) const {
     EventLogReader reader(std::string(AIRDOS_SOURCE_DIR) + "/logs/road_crossing06.lcm");
     EventLogWriter writer(Path(name));
     for (int i = 0; i < num_events; ++i) {
       const auto event = reader.Next();
+      if (!event) break;
       writer.Append(event->utime, event->channel, event->payload.data(), event->payload.size());
     }
     return Path(name);
@@ -233,7 +234,8 @@ TEST_F(UserCases, CaseC09OfTwoReplaysIntoOneFolderTheSecondIsRefused) {
   const std::string log = WriteLog("in.lcm", 400);
   const std::string run = Path("run");
   const auto first = Start({"airdos-replay", log, "--run-dir", run, "--no-progress"});
-  ASSERT_TRUE(WaitUntil([&] { return fs::exists(run + "/optimizer.yaml"); }, kDeadline_s));
+  const auto has_begun = [&] { return fs::exists(run + "/optimizer.yaml") || first->HasEnded(); };
+  ASSERT_TRUE(WaitUntil(has_begun, kDeadline_s));
   first->Signal(SIGSTOP);
   ExpectRefused({"airdos-replay", log, "--run-dir", run, "--people", "off", "--out", run + "/o"},
                 "another run is writing here (process " + std::to_string(first->pid()) + ")");
@@ -261,7 +263,7 @@ TEST_F(UserCases, CaseC11AReplayThatWasKilledDoesNotBlockTheFolder) {
     const std::uintmax_t size = fs::file_size(run + "/map.airdos", error);
     return !error && size > kOneChunk_bytes;
   };
-  ASSERT_TRUE(WaitUntil(has_chunk, kDeadline_s));
+  ASSERT_TRUE(WaitUntil([&] { return has_chunk() || killed->HasEnded(); }, kDeadline_s));
   killed->Signal(SIGKILL);
   EXPECT_EQ(killed->Wait(kDeadline_s).value_or(-1000), -SIGKILL);
   const auto next = Start({"airdos-replay", log, "--run-dir", run, "--no-progress"});
