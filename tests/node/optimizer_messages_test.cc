@@ -391,11 +391,11 @@ TEST(OptimizerMessages, EveryKindCountsTowardsTheSizeOfAPart) {
   MapChanges changes;
   changes.frames.resize(3000);
   changes.removed.resize(30000);
-  changes.humans.assign(600, Person());
+  changes.humans.assign(1500, Person());
   int num_frames = 0, num_removed = 0, num_humans = 0;
   const std::vector<map_update_t> parts = ToMapUpdates(kHeader, changes);
-  // 3000 * 72 + 30000 * 8 + 600 * 210 bytes or so at 110 kB a part.
-  EXPECT_GE(parts.size(), 5U);
+  // 3000 * 72 + 30000 * 8 + 1500 * 120 bytes at 110 kB a part.
+  EXPECT_GE(parts.size(), 6U);
   EXPECT_LE(parts.size(), 7U);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     EXPECT_EQ(parts[i].part, static_cast<int>(i));
@@ -408,7 +408,7 @@ TEST(OptimizerMessages, EveryKindCountsTowardsTheSizeOfAPart) {
   }
   EXPECT_EQ(num_frames, 3000);
   EXPECT_EQ(num_removed, 30000);
-  EXPECT_EQ(num_humans, 600);
+  EXPECT_EQ(num_humans, 1500);
 }
 
 }  // namespace
