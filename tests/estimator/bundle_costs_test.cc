@@ -66,13 +66,10 @@ TEST(BundleCosts, ALandmark) {
 TEST(BundleCosts, AnAcceleration) {
   BundleProblem problem;
   problem.camera = kCamera;
-  const Eigen::Quaterniond turn = ExpSo3({0, 0.06, 0});
-  problem.frames.push_back({FrameId{0}, 0, {{}, {0, 0, 0}}, true});
-  problem.frames.push_back({FrameId{1}, 0.1, {{}, {0.1, 0, 0}}, false});
-  problem.frames.push_back({FrameId{2}, 0.3, {{}, {0.7, 0.2, 0}}, false});
-  problem.frames[0].T_W_C.rotation = problem.frames[1].T_W_C.rotation =
-      Eigen::Quaterniond::Identity();
-  problem.frames[2].T_W_C.rotation = turn;
+  const Eigen::Quaterniond straight = Eigen::Quaterniond::Identity();
+  problem.frames.push_back({FrameId{0}, 0, {straight, {0, 0, 0}}, true});
+  problem.frames.push_back({FrameId{1}, 0.1, {straight, {0.1, 0, 0}}, false});
+  problem.frames.push_back({FrameId{2}, 0.3, {ExpSo3({0, 0.06, 0}), {0.7, 0.2, 0}}, false});
   problem.accelerations.push_back({{0, 1, 2}, {4, 0.5}});
   // v: (1, 0, 0), (3, 1, 0); w: 0, 0.3; over 0.15 s: (2, 1) / 0.6 and 0.3 / 0.075.
   EXPECT_NEAR(CostOf(Options(), problem), 0.5 * (5 / 0.36 + 16), 1e-9);
@@ -376,6 +373,8 @@ std::vector<Eigen::Vector3d> Moved(const Se3& motion, const Eigen::Vector3d& cen
   return points;
 }
 
+Se3 Turned(const Eigen::Vector3d& turn) { return {ExpSo3(turn), Eigen::Vector3d::Zero()}; }
+
 TEST(BundleCosts, OneMotionATrackStartsFromThePoints) {
   const Se3 motion{ExpSo3({0.1, 0.5, -0.2}), {0.3, 0.1, -0.2}};
   const std::vector<Eigen::Vector3d> p_0 = {{0, 0, 5}, {1, 0, 5}, {0, 0.8, 5}, {0.2, 0.1, 5.7}};
@@ -436,14 +435,14 @@ TEST(BundleCosts, TheDampingHoldsTheRotationByItsWeight) {
   const double damping = std::pow(0.1 / 0.02, 2);
   // Two points 2 * 0.5 m apart turn by 0.01 rad across their line.
   const std::vector<Eigen::Vector3d> two = {{-0.5, 0, 5}, {0.5, 0, 5}};
-  const auto turned = Moved({ExpSo3({0, 0, 0.01}), {0, 0, 0}}, {0, 0, 5}, two);
+  const auto turned = Moved(Turned({0, 0, 0.01}), {0, 0, 5}, two);
   double information = 2 * 0.25 / 0.01;
   Eigen::Vector3d turn = Turn(options, Things({two, turned}, MotionForm::kSe3Parts));
   EXPECT_NEAR(turn.z(), 0.01 * information / (information + damping), 1e-6);
   EXPECT_NEAR(turn.x(), 0, 1e-6);
   // Three points turn about the line through the first two, 0.2 m from which is their middle.
   const std::vector<Eigen::Vector3d> three = {{-0.5, 0, 5}, {0.5, 0, 5}, {0, 0.6, 5}};
-  const auto tilted = Moved({ExpSo3({0.01, 0, 0}), {0, 0, 0}}, {0, 0.2, 5}, three);
+  const auto tilted = Moved(Turned({0.01, 0, 0}), {0, 0.2, 5}, three);
   information = (2 * 0.04 + 0.16) / 0.01;
   turn = Turn(options, Things({three, tilted}, MotionForm::kSe3Parts));
   EXPECT_NEAR(turn.x(), 0.01 * information / (information + damping), 1e-6);
@@ -454,8 +453,8 @@ TEST(BundleCosts, TheTurnAPartChangesLittle) {
   options.motion_sigma_m = 0.1;
   options.free_rotation_sigma_rad = 1;
   const std::vector<Eigen::Vector3d> p_0 = {{-0.5, 0, 5}, {0.5, 0, 5}};
-  const auto p_1 = Moved({ExpSo3({0, 0, 0.01}), {0, 0, 0}}, {0, 0, 5}, p_0);
-  const auto p_2 = Moved({ExpSo3({0, 0, 0.03}), {0, 0, 0}}, {0, 0, 5}, p_1);
+  const auto p_1 = Moved(Turned({0, 0, 0.01}), {0, 0, 5}, p_0);
+  const auto p_2 = Moved(Turned({0, 0, 0.03}), {0, 0, 5}, p_1);
   BundleProblem problem = Things({p_0, p_1, p_2}, MotionForm::kSe3Smooth);
   problem.frames[2].time_s = 0.3;
   problem.humans[0].motion_noise = MotionNoise{0.1, 1e3, 0.5};

@@ -277,7 +277,11 @@ TEST(HumanTracks, DescribesWhoWasThereAndHowTheyMoved) {
   EXPECT_EQ(states[0].segments[0].segment, static_cast<int>(kRightThigh));
   EXPECT_EQ(states[0].segments[1].segment, static_cast<int>(kLeftThigh));
   EXPECT_EQ(states[0].segments[0].length_m, *problem.humans[1].segment_length_m[kRightThigh]);
-  EXPECT_TRUE(tracks.Describe({4}, Se3(), problem)[1].motions.size() == 1U);
+  EXPECT_EQ(tracks.Describe({4}, Se3(), problem)[1].motions.size(), 1U);
+  for (const std::int64_t id : {6, 7}) tracks.AddFrame(kCamera, Frame(id, {Person(2, 0.4)}));
+  EXPECT_TRUE(tracks.Describe({4}, Se3(), problem).empty()) << "no more in memory";
+  EXPECT_DOUBLE_EQ(tracks.Describe({5}, Se3(), problem)[0].time_s, 0.55);
+  EXPECT_DOUBLE_EQ(tracks.Describe({7}, Se3(), problem)[0].time_s, 0.75);
 }
 
 }  // namespace
