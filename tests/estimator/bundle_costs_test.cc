@@ -77,7 +77,10 @@ TEST(BundleCosts, AnAcceleration) {
   EXPECT_NEAR(CostOf(Options(), problem), 0, 1e-12);
   problem.frames[2].time_s = 0.3;
   problem.frames[1].time_s = 0;
-  EXPECT_NEAR(CostOf(Options(), problem), 0, 1e-12);
+  problem.landmarks.push_back({LandmarkId{1}, {0.1, 0.2, 6}, false});
+  const Eigen::Vector3d error_px(3, -2, 1);  // so that no cost is not mistaken for one of none
+  problem.observations.push_back({1, 0, kCamera.ProjectStereo({0, 0.2, 6}) + error_px, true, 0.5});
+  EXPECT_NEAR(CostOf(Options(), problem), 28, 1e-9);
 }
 
 /// Fixed frames at these times.
@@ -395,6 +398,8 @@ TEST(BundleCosts, OneMotionATrackStartsFromThePoints) {
   EXPECT_EQ(NumMotions(options, problem), 8);
   problem.frames[2].time_s = 0.2015;
   EXPECT_EQ(NumMotions(options, problem), 4);
+  for (std::size_t i = 0; i < 3; ++i) problem.frames[i].time_s = 0.3 * static_cast<double>(i);
+  EXPECT_EQ(NumMotions(options, problem), 8) << "whatever the first step was";
 }
 
 TEST(BundleCosts, OneMotionATrackStartsWhereItIsTold) {

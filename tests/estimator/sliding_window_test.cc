@@ -116,6 +116,39 @@ TEST(SlidingWindow, WithoutLandmarksTheOdometryLeads) {
   ExpectPose(T_W_C[8], T_W_C[7]);
 }
 
+TEST(SlidingWindow, ANewLandmarkStandsWhereItIsSeenFromThePrediction) {
+  SlidingWindowOptimizer optimizer(StaticOnly(), kCamera);
+  FrameInput input = At(0, 0, Pose(2));
+  input.T_W_C = Pose(5);
+  optimizer.Process(input);
+  input = At(1, 0.1, Pose(4));
+  AddFeatures(Se3(), 3, 3, 0.5, &input);
+  const FrameResult result = optimizer.Process(input);
+  ASSERT_EQ(result.changes.landmarks.size(), 1U);
+  const Se3 T_W_C = Pose(5) * Pose(2).inverse() * Pose(4);
+  EXPECT_LT((result.changes.landmarks[0].p_W - T_W_C * Point(3)).norm(), 1e-9);
+}
+
+TEST(SlidingWindow, OdometryGoesOnFromWhereItsFrameIsKnownToBeNow) {
+  SlidingWindowOptions options = StaticOnly();
+  options.bundle.huber_static = options.bundle.eliminate_static = 1e9;
+  SlidingWindowOptimizer optimizer(options, kCamera);
+  FrameInput input = At(0, 0, Pose(0));
+  AddFeatures(Pose(0), 0, 9, 0.5, &input);
+  optimizer.Process(input);
+  const Se3 T_O_C_1 = Pose(1) * Se3{ExpSo3({0.01, 0.02, 0}), {0.03, -0.02, 0.05}};
+  input = At(1, 0.1, T_O_C_1);  // off, and sees nothing known
+  AddFeatures(Pose(1), 10, 19, 0.5, &input);
+  ExpectPose(optimizer.Process(input).estimate.T_W_C, T_O_C_1);
+  input = At(2, 0.2);  // sees what both saw
+  AddFeatures(Pose(2), 0, 19, 0.5, &input);
+  const FrameResult result = optimizer.Process(input);
+  EXPECT_LT(Boxminus(result.changes.frames[1].T_W_C, Pose(1)).norm(), 1e-6);
+  const Se3 step = Pose(1).inverse() * Pose(3);
+  EXPECT_LT(Boxminus(optimizer.Process(At(3, 0.3, T_O_C_1 * step)).estimate.T_W_C, Pose(3)).norm(),
+            1e-6);
+}
+
 TEST(SlidingWindow, OdometryIsComparedOverTheWindowAndAFrame) {
   for (const int num_missed : {3, 4}) {
     SlidingWindowOptions options = StaticOnly();
@@ -162,6 +195,7 @@ Matrix6d CovarianceOfThird(const std::vector<double>& times_s, SlidingWindowOpti
     }
     result = optimizer.Process(input);
   }
+  EXPECT_EQ(result.estimate.status, Status::kPredicted) << "nothing is seen in it";
   return result.estimate.covariance;
 }
 
@@ -204,8 +238,9 @@ TEST(SlidingWindow, OnlyFramesOfTheWindowMoveSmoothly) {
   }
 }
 
-TEST(SlidingWindow, CountsWhatHoldsTheNewestFrame) {
-  SlidingWindowOptimizer optimizer(StaticOnly(), kCamera);
+/// Of a third frame that sees ten known landmarks, one of them falsely, and seven new ones.
+FrameEstimate ThirdFrame(const SlidingWindowOptions& options) {
+  SlidingWindowOptimizer optimizer(options, kCamera);
   FrameResult result;
   for (int i = 0; i < 3; ++i) {
     FrameInput input = At(i, 0.1 * i, Pose(i));
@@ -213,13 +248,27 @@ TEST(SlidingWindow, CountsWhatHoldsTheNewestFrame) {
     if (i == 2) input.features[4].uvu_px.x() += 50;
     result = optimizer.Process(input);
   }
-  EXPECT_EQ(result.estimate.num_static_landmarks, 10) << "seven were seen only once";
-  EXPECT_EQ(result.estimate.num_static_observations, 9);
-  EXPECT_EQ(result.estimate.summary.num_reprojection_eliminated, 1);
-  EXPECT_EQ(result.estimate.status, Status::kConverged);
-  EXPECT_EQ(result.estimate.id.value, 2);
-  EXPECT_LT(result.estimate.covariance.norm(), 0.1);
-  ExpectPose(result.estimate.T_W_C, Pose(2));
+  return result.estimate;
+}
+
+TEST(SlidingWindow, CountsWhatHoldsTheNewestFrame) {
+  const FrameEstimate estimate = ThirdFrame(StaticOnly());
+  EXPECT_EQ(estimate.num_static_landmarks, 10) << "seven were seen only once";
+  EXPECT_EQ(estimate.num_static_observations, 9);
+  EXPECT_EQ(estimate.summary.num_reprojection_eliminated, 1);
+  EXPECT_EQ(estimate.status, Status::kConverged);
+  EXPECT_EQ(estimate.id.value, 2);
+  EXPECT_LT(estimate.covariance.norm(), 0.1);
+  ExpectPose(estimate.T_W_C, Pose(2));
+}
+
+TEST(SlidingWindow, ItConvergedIfTheLastPassDid) {
+  SlidingWindowOptions options = StaticOnly();
+  options.bundle.function_tolerance = 1e-4;
+  options.bundle.max_iterations = 3;
+  EXPECT_EQ(ThirdFrame(options).status, Status::kConverged) << "after the false one was out";
+  options.bundle.max_iterations_after_elimination = 0;
+  EXPECT_EQ(ThirdFrame(options).status, Status::kNotConverged);
 }
 
 /// d (u_left, v, u_right) / d p_W by differences.
@@ -302,6 +351,8 @@ TEST(SlidingWindow, ALandmarkIsReportedWhenItMovedSinceItWasReported) {
   ASSERT_GT(moved_m(0, 2), 1.1 * moved_m(0, 1));
   ASSERT_GT(moved_m(0, 2), 1.1 * moved_m(1, 2));
   EXPECT_EQ(Published(0.99 * moved_m(0, 1))[1].count(7), 1U);
+  ASSERT_LT(moved_m(1, 2), 0.9 * moved_m(0, 1));
+  EXPECT_EQ(Published(0.95 * moved_m(0, 1))[2].count(7), 0U) << "reported in the frame before";
   // Twice by less than the limit, together by more.
   const auto some = Published(0.95 * moved_m(0, 2));
   EXPECT_EQ(some[0].size(), 15U);
@@ -392,6 +443,12 @@ TEST(SlidingWindow, WhereTheStaticSceneIsStrongTheSummaryIsItsOwn) {
   EXPECT_EQ(both.final_cost, one.final_cost);
   EXPECT_EQ(both.has_converged, one.has_converged);
   EXPECT_EQ(both.num_people, 3);
+  // One step each: as many iterations again.
+  options.bundle.max_iterations = 1;
+  options.bundle.max_iterations_after_elimination = 0;
+  const int num_alone = RunAll(options, scene)[5].estimate.summary.num_iterations;
+  options.bundle.use_people = true;
+  EXPECT_EQ(RunAll(options, scene)[5].estimate.summary.num_iterations, 2 * num_alone);
   EXPECT_EQ(with[5].estimate.covariance, without[5].estimate.covariance);
 }
 
