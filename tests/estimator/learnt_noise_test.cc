@@ -135,6 +135,21 @@ TEST(LearntNoise, HowFarPointsStrayFromTheBody) {
   EXPECT_GT(std::abs(expected(true) / expected(false) - 1), 0.05);
 }
 
+TEST(LearntNoise, TheMeanOfThreeLeavesTwoThirds) {
+  BundleProblem problem = Frames({0, 0.1});
+  const Eigen::Vector3d stray(0.06, -0.03, 0.03);
+  for (int frame = 0; frame < 2; ++frame) {
+    AddJoint(frame, kNose, {0, -0.2, 6}, 0.01, &problem);
+    AddJoint(frame, kNeck, Eigen::Vector3d(0, 0, 6) + frame * stray, 0.01, &problem);
+    AddJoint(frame, kRightHip, {0.1, 0.5, 6}, 0.01, &problem);
+  }
+  const double expected = PosteriorMean(0.05, 0.8, 0.005, 0.6, [&stray](double sigma_m) {
+    const Eigen::Matrix3d S = 2. / 3 * (2e-4 + sigma_m * sigma_m) * Eigen::Matrix3d::Identity();
+    return 0.5 * (2 * LogNormal(stray / 3, S) + LogNormal(2 * stray / 3, S));
+  });
+  EXPECT_NEAR(Learn(Options(), problem).motion_sigma_m / expected, 1, 0.01);
+}
+
 TEST(LearntNoise, OneWildStepCountsAsFarAsTheLimit) {
   const Eigen::Vector3d apart(2, 0, 0);
   BundleProblem problem = TwoPoints(apart);
@@ -233,13 +248,13 @@ BundleProblem Path(const std::vector<double>& times_s, const std::vector<double>
 /// With a spread of the points that is known.
 TrackNoiseOptions PathOptions() {
   TrackNoiseOptions options = Options();
-  options.least.motion_sigma_m = options.largest.motion_sigma_m = 0.06;
+  options.least.motion_sigma_m = options.largest.motion_sigma_m = 0.3;
   options.camera_sigma_m = 0.03;
   return options;
 }
 
 constexpr double kMeasured = 0.02 * 0.02 + 0.03 * 0.03;
-constexpr double kStray = 0.06 * 0.06 / 6;  // of the centre of six body points, a step
+constexpr double kStray = 0.3 * 0.3 / 6;  // of the centre of six body points, a step
 
 /// Two steps at once: p_k = p_km1 + h v_k + stray, v_k = v_km1 + h a, v_0 ~ N(0, 2 m/s).
 double PathLikelihood(double sigma_m_s2, double h_1, double h_2, const Eigen::Vector2d& moved_m) {
@@ -269,7 +284,6 @@ TEST(LearntNoise, HowMuchSomebodyAccelerates) {
     return PathLikelihood(sigma, 0.125, 0.25, {0.125, 1.25});
   });
   EXPECT_NEAR(Learn(PathOptions(), problem).acceleration_m_s2 / both, 1, 0.01);
-  EXPECT_GT(both, 3);
   // After a break or more than half a second the filter starts anew.
   const double one = expected([](double sigma) { return OneStepLikelihood(sigma, 0.125, 0.125); });
   BundleProblem broken = problem;
@@ -292,7 +306,9 @@ TEST(LearntNoise, AHiddenPointDoesNotMoveTheBody) {
     AddJoint(frame, kNose, {0, -0.5, 6}, 0.01, &problem);
     if (frame % 2 == 0) AddJoint(frame, kNeck, {0.2, 0.5, 6.3}, 0.01, &problem);
   }
-  EXPECT_LT(Learn(Options(), problem).acceleration_m_s2, 0.5);
+  TrackNoiseOptions options = Options();
+  options.largest_chi2 = 1e9;
+  EXPECT_LT(Learn(options, problem).acceleration_m_s2, 0.5);
   EXPECT_TRUE(FindTrackBreaks({}, problem, problem.humans[0]).empty());
 }
 

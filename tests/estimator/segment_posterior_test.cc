@@ -144,6 +144,33 @@ TEST(SegmentPosterior, HipsTurnLevel) {
       0.03);
 }
 
+TEST(SegmentPosterior, AtTheEdgeOfTheImage) {
+  // The rays are of unlike length, the depths too, and both are measured better than a joint is
+  // one.
+  const MeasuredJoint hip = Joint({2.0, 0.5, 3}, 0.005, 0.02);
+  const MeasuredJoint knee = Joint({2.3, 0.75, 3.2}, 0.006, 0.03);
+  SegmentLengths lengths;
+  lengths.Add({{kRightHip, hip}, {kRightKnee, knee}});
+  const Look look =
+      LookAt(hip, knee, 0.5 * (1 / 3. + 1 / 3.2), std::hypot(0.005, 0.006), std::hypot(0.02, 0.03));
+  ExpectLength(lengths, kRightThigh, Posterior({look}, 0.43, false));
+}
+
+TEST(SegmentPosterior, OneEndIsMeasuredWorse) {
+  for (const bool is_hip_worse : {true, false}) {
+    const MeasuredJoint hip =
+        Joint({0.1, 0.2, 4}, is_hip_worse ? 0.3 : 0.02, is_hip_worse ? 0.2 : 0.01);
+    const MeasuredJoint knee =
+        Joint({0.3, 0.45, 4.3}, is_hip_worse ? 0.02 : 0.3, is_hip_worse ? 0.01 : 0.2);
+    SegmentLengths lengths;
+    lengths.Add({{kRightHip, hip}, {kRightKnee, knee}});
+    const Look look =
+        LookAt(hip, knee, 0.5 * (1 / 4. + 1 / 4.3), std::hypot(0.3, 0.02), std::hypot(0.2, 0.01));
+    EXPECT_GT(look.across_m, 0.15);
+    ExpectLength(lengths, kRightThigh, Posterior({look}, 0.43, false));
+  }
+}
+
 TEST(SegmentPosterior, ABadlyMeasuredDepthIsThePersons) {
   // Both ends of the forearm came out far behind the rest, at 5 m, and do not know it.
   const MeasuredJoint elbow = Joint({0.5, 0.1, 8}, 3, 0.02);

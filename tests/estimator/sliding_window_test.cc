@@ -265,7 +265,7 @@ TEST(SlidingWindow, CountsWhatHoldsTheNewestFrame) {
 TEST(SlidingWindow, ItConvergedIfTheLastPassDid) {
   SlidingWindowOptions options = StaticOnly();
   options.bundle.function_tolerance = 1e-4;
-  options.bundle.max_iterations = 3;
+  options.bundle.max_iterations = 1;
   EXPECT_EQ(ThirdFrame(options).status, Status::kConverged) << "after the false one was out";
   options.bundle.max_iterations_after_elimination = 0;
   EXPECT_EQ(ThirdFrame(options).status, Status::kNotConverged);

@@ -193,9 +193,9 @@ TEST(OptimizerOptions, WhatIsOutsideTheBoundsIsNamed) {
 /// is weak and one that is gone.
 SyntheticScene BusyScene() {
   SyntheticSceneOptions options;
-  options.num_frames = 24;
+  options.num_frames = 18;
   options.num_people = 4;
-  options.max_static_per_frame = 30;
+  options.max_static_per_frame = 25;
   options.speed_m_s = 3;
   options.joint_sigma_px = 0.5;
   options.outlier_ratio = 0.05;
