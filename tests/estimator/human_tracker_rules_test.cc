@@ -111,6 +111,91 @@ TEST(HumanTrackerRules, OneImageGivesLessRoom) {
   }
 }
 
+/// The sides of the third frame's left detection are exchanged; where the tracker has the right
+/// hip.
+double RightHipX(double min_swap_gain, double min_swap_gain_doubtful) {
+  HumanTrackerOptions options;
+  options.min_swap_gain = min_swap_gain;
+  options.min_swap_gain_doubtful = min_swap_gain_doubtful;
+  HumanTracker tracker(options);
+  for (int i = 0; i < 2; ++i) tracker.Process(kTestCamera, Frame(kStanding));
+  PeopleFrame frame = Frame(kStanding);
+  frame.left[0] = SwapSides(frame.left[0], SideSwap::kAll);
+  const TrackedFrame tracked = tracker.Process(kTestCamera, frame);
+  EXPECT_EQ(NumObserved(tracked.humans.at(0).joints), kNumJoints) << "both images have one order";
+  return tracked.humans.at(0).joints[kRightHip]->p_C.x();
+}
+
+TEST(HumanTrackerRules, WhereImagesDisagreeOnSidesLessDecides) {
+  EXPECT_NEAR(RightHipX(1e6, 3), kStanding[kRightHip].x(), 1e-6);
+  EXPECT_NEAR(RightHipX(3, 1e6), kStanding[kLeftHip].x(), 1e-6);
+}
+
+/// A wall of texture at the person's depth, as the camera sees it that far to the right.
+cv::Mat Wall(double shift_px) {
+  cv::Mat image(kTestCamera.height, kTestCamera.width, CV_8UC1);
+  for (int v = 0; v < image.rows; ++v) {
+    for (int u = 0; u < image.cols; ++u) {
+      const double x = u + shift_px;
+      image.at<unsigned char>(v, u) = static_cast<unsigned char>(
+          128 + 40 * std::sin(0.31 * x + 0.2 * v) + 30 * std::sin(0.17 * x * (1 + 0.002 * v)) +
+          20 * std::cos(0.53 * x - 0.41 * v));
+    }
+  }
+  return image;
+}
+
+/// Somebody who stands before the wall; the third frame is given.
+std::vector<TrackedFrame> BeforeTheWall(const HumanTrackerOptions& options,
+                                        const std::vector<PeopleFrame>& frames) {
+  static const cv::Mat left = Wall(0), right = Wall(38.5);  // 770 * 0.25 / 5
+  HumanTracker tracker(options);
+  std::vector<TrackedFrame> tracked;
+  for (PeopleFrame frame : frames) {
+    frame.left_gray = left;
+    frame.right_gray = right;
+    tracked.push_back(tracker.Process(kTestCamera, frame));
+  }
+  return tracked;
+}
+
+TEST(HumanTrackerRules, WhoIsMissedIsCarriedForSoManyFrames) {
+  HumanTrackerOptions options;
+  options.max_carried_frames = 2;
+  options.carried_sigma_factor = 1.75;
+  const PeopleFrame seen = Frame(kStanding);
+  const auto tracked = BeforeTheWall(options, {seen, seen, {}, {}, {}});
+  for (std::size_t k = 2; k < 4; ++k) {
+    ASSERT_EQ(tracked[k].humans.size(), 1U) << k;
+    EXPECT_EQ(tracked[k].humans[0].id.value, 1);
+    // 0.009 of the height of 1.7 * 38.5 / 0.25 px, and wider by the factor.
+    for (const auto& joint : tracked[k].humans[0].joints) {
+      if (!joint) continue;
+      EXPECT_NEAR(joint->sigma_px, 1.75 * 0.009 * 261.8, 0.01);
+      EXPECT_NEAR(joint->p_C.z(), 5, 0.1);
+    }
+  }
+  EXPECT_TRUE(tracked[4].humans.empty());
+}
+
+TEST(HumanTrackerRules, SidesOfOneImageAreExchangedForMuch) {
+  PeopleFrame left_only = Frame(kStanding, kNumJoints, false);
+  left_only.left[0] = SwapSides(left_only.left[0], SideSwap::kAll);
+  const PeopleFrame seen = Frame(kStanding);
+  HumanTrackerOptions options;
+  options.min_swap_gain = 20;
+  options.min_swap_gain_doubtful = 1e6;
+  auto tracked = BeforeTheWall(options, {seen, seen, left_only});
+  ASSERT_EQ(tracked[2].humans.size(), 1U);
+  ASSERT_TRUE(tracked[2].humans[0].joints[kRightHip]);
+  EXPECT_NEAR(tracked[2].humans[0].joints[kRightHip]->p_C.x(), kStanding[kRightHip].x(), 0.05);
+  options.min_swap_gain = 1e6;
+  options.min_swap_gain_doubtful = 1;
+  tracked = BeforeTheWall(options, {seen, seen, left_only});
+  ASSERT_TRUE(tracked[2].humans.at(0).joints[kRightHip]);
+  EXPECT_NEAR(tracked[2].humans[0].joints[kRightHip]->p_C.x(), kStanding[kLeftHip].x(), 0.05);
+}
+
 TEST(HumanTrackerRules, EachTrackHasOneDetection) {
   HumanTracker tracker({});
   tracker.Process(kTestCamera, Frame(kStanding));

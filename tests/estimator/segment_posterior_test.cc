@@ -156,6 +156,18 @@ TEST(SegmentPosterior, AtTheEdgeOfTheImage) {
   ExpectLength(lengths, kRightThigh, Posterior({look}, 0.43, false));
 }
 
+TEST(SegmentPosterior, EachEndStandsAtItsOwnDepth) {
+  const MeasuredJoint hip = Joint({0.1, 0.2, 2}, 0.005, 0.01);
+  const MeasuredJoint knee = Joint({0.4, 0.4, 2.4}, 0.006, 0.01);
+  for (const bool is_hip_first : {true, false}) {
+    SegmentLengths lengths;
+    lengths.Add({{kRightHip, is_hip_first ? hip : knee}, {kRightKnee, is_hip_first ? knee : hip}});
+    const Look look = LookAt(hip, knee, 0.5 * (1 / 2. + 1 / 2.4), std::hypot(0.005, 0.006),
+                             std::hypot(0.01, 0.01));
+    ExpectLength(lengths, kRightThigh, Posterior({look}, 0.43, false));
+  }
+}
+
 TEST(SegmentPosterior, OneEndIsMeasuredWorse) {
   for (const bool is_hip_worse : {true, false}) {
     const MeasuredJoint hip =

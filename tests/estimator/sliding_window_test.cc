@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -145,8 +146,12 @@ TEST(SlidingWindow, OdometryGoesOnFromWhereItsFrameIsKnownToBeNow) {
   const FrameResult result = optimizer.Process(input);
   EXPECT_LT(Boxminus(result.changes.frames[1].T_W_C, Pose(1)).norm(), 1e-6);
   const Se3 step = Pose(1).inverse() * Pose(3);
-  EXPECT_LT(Boxminus(optimizer.Process(At(3, 0.3, T_O_C_1 * step)).estimate.T_W_C, Pose(3)).norm(),
-            1e-6);
+  input = At(3, 0.3, T_O_C_1 * step);
+  AddFeatures(Pose(3), 25, 25, 0.5, &input);
+  const FrameResult next = optimizer.Process(input);
+  EXPECT_LT(Boxminus(next.estimate.T_W_C, Pose(3)).norm(), 1e-6);
+  ASSERT_EQ(next.changes.landmarks.size(), 1U) << "seen from there";
+  EXPECT_LT((next.changes.landmarks[0].p_W - Point(25)).norm(), 1e-5);
 }
 
 TEST(SlidingWindow, OdometryIsComparedOverTheWindowAndAFrame) {
@@ -234,7 +239,9 @@ TEST(SlidingWindow, OnlyFramesOfTheWindowMoveSmoothly) {
     input.motion_sigma_position_m = input.motion_sigma_orientation_rad = 1e-5;
     AddFeatures(Pose(i), 0, 19, 0.5, &input);
     // The camera accelerates, and two frames say nothing of that.
-    ExpectPose(optimizer.Process(input).estimate.T_W_C, Pose(i));
+    const FrameEstimate estimate = optimizer.Process(input).estimate;
+    ExpectPose(estimate.T_W_C, Pose(i));
+    EXPECT_EQ(estimate.num_window_frames, std::min(i + 1, 2)) << "key frames are not of it";
   }
 }
 
@@ -450,6 +457,88 @@ TEST(SlidingWindow, WhereTheStaticSceneIsStrongTheSummaryIsItsOwn) {
   options.bundle.use_people = true;
   EXPECT_EQ(RunAll(options, scene)[5].estimate.summary.num_iterations, 2 * num_alone);
   EXPECT_EQ(with[5].estimate.covariance, without[5].estimate.covariance);
+}
+
+/// Two frames with so many static points, and people.
+SyntheticScene TwoFrames(int num_static) {
+  SyntheticSceneOptions options;
+  options.num_frames = 2;
+  options.num_people = 3;
+  SyntheticScene scene = MakeSyntheticScene(options);
+  for (FrameInput& input : scene.frames) {
+    std::vector<StaticObservation> both;
+    for (const StaticObservation& feature : input.features) {
+      const auto is_it = [&feature](const StaticObservation& o) { return o.id == feature.id; };
+      const auto& first = scene.frames[0].features;
+      const auto& second = scene.frames[1].features;
+      if (std::any_of(first.begin(), first.end(), is_it) &&
+          std::any_of(second.begin(), second.end(), is_it)) {
+        both.push_back(feature);
+      }
+    }
+    input.features = both;
+  }
+  for (FrameInput& input : scene.frames)
+    input.features.resize(static_cast<std::size_t>(num_static));
+  return scene;
+}
+
+/// The adjustment with people of the second frame, step by step.
+Se3 PoseWithPeople(const SyntheticScene& scene, const SlidingWindowOptions& options,
+                   bool are_landmarks_fixed) {
+  WindowMap map(options.map);
+  HumanTracks people(options.people);
+  for (const FrameInput& input : scene.frames) {
+    map.AddFrame(scene.camera, input,
+                 scene.frames[0].T_W_C.value_or(*scene.frames[0].T_O_C) *
+                     (scene.frames[0].T_O_C->inverse() * *input.T_O_C));
+    people.AddFrame(scene.camera, input);
+  }
+  BundleProblem problem = map.BuildProblem(scene.camera);
+  BundleOptions bundle = options.bundle;
+  bundle.use_people = false;
+  SolveBundle(bundle, &problem);
+  for (BundleProblem::Landmark& landmark : problem.landmarks)
+    landmark.is_fixed = are_landmarks_fixed;
+  people.AddTo(&problem);
+  SolveBundle(options.bundle, &problem);
+  return problem.frames.back().T_W_C;
+}
+
+TEST(SlidingWindow, PeopleDoNotMoveTheLandmarksOfAStrongScene) {
+  SlidingWindowOptions options;
+  options.learn_track_noise = false;
+  options.camera_motion.use_acceleration = false;
+  options.bundle.eliminate_static = 1e9;  // all of them count
+  options.trust.min_static_observations = 20;
+  for (const int num_static : {20, 19}) {
+    const SyntheticScene scene = TwoFrames(num_static);
+    const FrameEstimate estimate = RunAll(options, scene)[1].estimate;
+    ASSERT_EQ(estimate.num_static_observations, num_static);
+    const Se3 fixed = PoseWithPeople(scene, options, true);
+    const Se3 free = PoseWithPeople(scene, options, false);
+    ASSERT_GT(Boxminus(fixed, free).norm(), 1e-6);
+    ExpectPose(estimate.T_W_C_with_people, num_static == 20 ? fixed : free);
+  }
+}
+
+TEST(SlidingWindow, NoMotionLeadsToWhereATrackBecameSomebodyElses) {
+  SlidingWindowOptions options = StaticOnly();
+  options.bundle.use_people = true;
+  SlidingWindowOptimizer optimizer(options, kCamera);
+  BundleSummary summary;
+  for (int i = 0; i < 6; ++i) {
+    FrameInput input = At(i, 0.1 * i, Pose(0));
+    AddFeatures(Pose(0), 0, 19, 0.5, &input);
+    HumanObservation person{HumanId{1}, {}};
+    for (const int joint : {kNeck, kRightShoulder, kLeftShoulder}) {
+      const Eigen::Vector3d p_C(-1.5 + 0.2 * joint + (i < 3 ? 0 : 3), 0.1, 4);
+      person.joints.push_back({joint, kCamera.ProjectStereo(p_C), Eigen::Matrix3d::Identity()});
+    }
+    input.humans.push_back(person);
+    summary = optimizer.Process(input).estimate.summary;
+  }
+  EXPECT_EQ(summary.num_motion, 3 * 4) << "of five steps one is none";
 }
 
 TEST(SlidingWindow, PeopleAreDescribedWhenTheyComeAndWhenTheyLeave) {

@@ -77,7 +77,6 @@ std::vector<Option> WindowOptions() {
 }
 
 std::vector<Option> PeopleOptions() {
-  const Overrides fixed_noise = {"people.learn_track_noise=false"};
   return {
       {"people.mode", "mask_only", AIRDOS_MEMBER(people), 1, "maybe"},
       {"people.rigidity", "false", AIRDOS_MEMBER(window.bundle.use_rigidity), 0, "2"},
@@ -95,15 +94,14 @@ std::vector<Option> PeopleOptions() {
        "0 101"},
       {"people.segment_length_sigma_m", "0.05", AIRDOS_MEMBER(window.bundle.segment_length_sigma_m),
        0.05, "0 101"},
-      {"people.motion_sigma_m", "0.09", AIRDOS_MEMBER(window.bundle.motion_sigma_m), 0.09, "0 101",
-       fixed_noise},
+      {"people.motion_sigma_m", "0.09", AIRDOS_MEMBER(window.bundle.motion_sigma_m), 0.09, "0 101"},
       {"people.motion_max_gap_s", "0.05", AIRDOS_MEMBER(window.bundle.motion_max_gap_s), 0.05,
        "-0.1 101"},
       {"people.learn_track_noise", "false", AIRDOS_MEMBER(window.learn_track_noise), 0, "2"},
       {"people.person_speed_m_s", "0.3", AIRDOS_MEMBER(window.bundle.person_speed_m_s), 0.3,
        "-0.1 1001"},
       {"people.person_acceleration_m_s2", "0.4",
-       AIRDOS_MEMBER(window.bundle.person_acceleration_m_s2), 0.4, "0 10001", fixed_noise},
+       AIRDOS_MEMBER(window.bundle.person_acceleration_m_s2), 0.4, "0 10001"},
       {"people.free_rotation_sigma_rad",
        "0.7",
        AIRDOS_MEMBER(window.bundle.free_rotation_sigma_rad),

@@ -237,6 +237,8 @@ TEST(HumanTrack, ASwapIsWhatSavesEnough) {
   EXPECT_TRUE(track.HasSwap(swapped, SideSwap::kAll, 47.9));
   EXPECT_FALSE(track.HasSwap(swapped, SideSwap::kAll, 48.1));
   EXPECT_FALSE(track.HasSwap(first.left, SideSwap::kAll, 0));
+  EXPECT_FALSE(track.HasSwap(first.left, SideSwap::kAll, -47.9)) << "it would cost as much";
+  EXPECT_TRUE(track.HasSwap(first.left, SideSwap::kAll, -48.1));
   const BodyKeypoints legs = SwapSides(first.left, SideSwap::kLowerLegs);
   EXPECT_TRUE(track.HasSwap(legs, SideSwap::kLowerLegs, 15.9));
   EXPECT_FALSE(track.HasSwap(legs, SideSwap::kLowerLegs, 16.1));

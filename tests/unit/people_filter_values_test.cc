@@ -88,6 +88,33 @@ TEST(PeopleFilterValues, WithTimeVelocityAccelerationAndWobbleComeIn) {
   EXPECT_LT((said.covariance_W - expected).norm(), 1e-9);
 }
 
+TEST(PeopleFilterValues, AJointThatIsSeenLaterOwesTheOthersNothing) {
+  PeopleFilter filter(Options());
+  filter.Update({See(kNeckC)}, Camera(), PoseCovariance());
+  filter.Predict(0.25);
+  const Eigen::Vector3d nose_C(0.6, -0.7, 4.1);
+  PersonMeasurement both = See(kNeckC);
+  both.joints.push_back({kNose, nose_C, Measured()});
+  filter.Update({both}, Camera(), PoseCovariance());
+  const PersonMeasurement nose{HumanId{7}, {{kNose, nose_C, Measured()}}};
+  const auto covariance = [&](double step_s) {
+    PeopleFilter later = filter;
+    later.Predict(step_s);
+    return Eigen::Matrix3d(Only(later.Constrain({nose}, Camera(), PoseCovariance())).covariance_W);
+  };
+  const Eigen::Matrix3d now = covariance(0);
+  EXPECT_LT((now - 2 * MeasuredW() - OfCamera(nose_C)).norm(), 1e-9);
+  // What the velocity brings in goes with the square of time, as nothing is known of both.
+  const auto velocity = [&](double step_s) {
+    const double other_m2 = 0.0025 * step_s / 0.1 + std::pow(3 * step_s * step_s, 2);
+    return Eigen::Matrix3d((covariance(step_s) - now - other_m2 * Eigen::Matrix3d::Identity()) /
+                           (step_s * step_s));
+  };
+  // Whatever the filter learnt of the acceleration in between is in both.
+  EXPECT_LT((velocity(0.1) - velocity(0.2)).norm(), 0.2);
+  EXPECT_GT(velocity(0.1).trace(), 0.1);
+}
+
 TEST(PeopleFilterValues, ASecondLookCorrectsByItsWeight) {
   PeopleFilter filter(Options());
   filter.Update({See(kNeckC)}, Camera(), PoseCovariance());
