@@ -178,6 +178,44 @@ TEST(HumanTrackerRules, WhoIsMissedIsCarriedForSoManyFrames) {
   EXPECT_TRUE(tracked[4].humans.empty());
 }
 
+/// The wall, on which another piece hangs around a place of the left image, at the same depth.
+PeopleFrame WithPicture(const Eigen::Vector2d& uv_px) {
+  PeopleFrame frame;
+  frame.left_gray = Wall(0);
+  frame.right_gray = Wall(38.5);
+  const int u = static_cast<int>(uv_px.x()), v = static_cast<int>(uv_px.y());
+  const cv::Rect left(u - 30, v - 30, 60, 60), right(u - 69, v - 30, 60, 60);
+  Wall(1000)(left).copyTo(frame.left_gray(left));
+  Wall(1038.5)(right).copyTo(frame.right_gray(right));
+  return frame;
+}
+
+TEST(HumanTrackerRules, AJointThatFlowLostIsNotCarried) {
+  const PeopleFrame seen = Frame(kStanding);
+  const auto carried = BeforeTheWall({}, {seen, seen, {}});
+  ASSERT_EQ(carried[2].humans.size(), 1U);
+  int num_tried = 0, num_lost = 0;
+  for (std::size_t joint = 0; joint < kNumJoints; ++joint) {
+    if (!carried[2].humans[0].joints[joint]) continue;
+    HumanTracker tracker({});
+    for (int k = 0; k < 2; ++k) {
+      PeopleFrame frame = seen;
+      frame.left_gray = Wall(0);
+      frame.right_gray = Wall(38.5);
+      tracker.Process(kTestCamera, frame);
+    }
+    // There the images have a disparity, but of something else.
+    const TrackedFrame lost =
+        tracker.Process(kTestCamera, WithPicture(seen.left[0][joint].uv_px()));
+    if (lost.humans.empty()) continue;  // hardly anything is left
+    num_lost += lost.humans[0].joints[joint] ? 0 : 1;
+    ++num_tried;
+  }
+  // Flow takes what is like enough for the same, here and there.
+  EXPECT_GT(num_tried, 1);
+  EXPECT_GE(num_lost, num_tried - 1);
+}
+
 TEST(HumanTrackerRules, SidesOfOneImageAreExchangedForMuch) {
   PeopleFrame left_only = Frame(kStanding, kNumJoints, false);
   left_only.left[0] = SwapSides(left_only.left[0], SideSwap::kAll);
