@@ -5,6 +5,8 @@ target_include_directories(airdos_options INTERFACE ${PROJECT_SOURCE_DIR} ${CMAK
 if(AIRDOS_SANITIZE)
   target_compile_options(airdos_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
                                                   -fno-omit-frame-pointer)
+  # An empty optional that is read, an index past the end of a vector: end there, with the line.
+  target_compile_definitions(airdos_options INTERFACE _GLIBCXX_ASSERTIONS)
   # GCC 12 sees uninitialized members in its own <regex> once it instruments it.
   target_compile_options(airdos_options INTERFACE -Wno-maybe-uninitialized)
   target_link_options(airdos_options INTERFACE -fsanitize=address,undefined)
@@ -49,7 +51,8 @@ function(airdos_test name tier)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPS} airdos_options GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE AIRDOS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
-                                             AIRDOS_BINARY_DIR="${CMAKE_BINARY_DIR}")
+                                             AIRDOS_BINARY_DIR="${CMAKE_BINARY_DIR}"
+                                             _GLIBCXX_ASSERTIONS)
   if(NOT TARGET airdos_tests_${tier})  # all tests of one tier
     add_custom_target(airdos_tests_${tier})
   endif()

@@ -173,24 +173,32 @@ TEST(BundleTest, EveryMotionFormSolvesAndReportsMotions) {
   }
 }
 
+// The neighbours and the rest of the body hold the joint where it is, so that its own measurement
+// goes, and nothing else.
 TEST(BundleTest, AJointFarOffIsEliminated) {
-  const SyntheticScene scene = MakeSyntheticScene(Walkers(100, 2));
+  SyntheticSceneOptions scene_options = Walkers(100, 2);
+  scene_options.joint_sigma_px = 0.2;
+  const SyntheticScene scene = MakeSyntheticScene(scene_options);
   BundleProblem problem = MakeProblem(scene, true);
-  BundleProblem::JointState& wrong = problem.humans[0].joints[3];
-  wrong.uvu_px.x() += 80;  // nearer by far than the rest of the body
-  wrong.p_W = scene.T_W_C[static_cast<std::size_t>(wrong.frame)] *
-              *scene.camera.Triangulate(wrong.uvu_px.x(), wrong.uvu_px.y(), wrong.uvu_px.z());
   BundleOptions options;
-  options.max_iterations = 30;
-  const BundleSummary summary = SolveBundle(options, &problem);
-  EXPECT_TRUE(wrong.is_eliminated || problem.humans[0].num_rigidity_eliminated > 0);
-  EXPECT_GE(summary.num_reprojection_eliminated + summary.num_rigidity_eliminated, 1);
+  options.use_motion = false;
+  options.max_iterations = options.max_iterations_after_elimination = 50;
+  BundleProblem right = problem;
+  const BundleSummary before = SolveBundle(options, &right);
+  BundleProblem::JointState& wrong = problem.humans[0].joints[3];
+  wrong.uvu_px += Eigen::Vector3d(0, 60, 0);  // along the image, where the segments say most
+  const BundleSummary after = SolveBundle(options, &problem);
+  EXPECT_FALSE(right.humans[0].joints[3].is_eliminated);
+  EXPECT_TRUE(wrong.is_eliminated);
+  EXPECT_EQ(after.num_reprojection_eliminated, before.num_reprojection_eliminated + 1);
+  EXPECT_EQ(problem.humans[1].num_rigidity_eliminated, right.humans[1].num_rigidity_eliminated);
 }
 
 TEST(BundleTest, CovarianceMatchesTheScatterOfTheErrors) {
-  // Squared Mahalanobis distances of the newest pose have a mean of 6 and, over 40 runs, a standard
-  // error of 0.55; the linearisation and the kernel widen that.
-  constexpr int kRuns = 40;
+  // Squared Mahalanobis distances of the newest pose have a mean of 6 and, over 160 runs, a
+  // standard error of 0.27. Four of these: a covariance that is a quarter too large or too small is
+  // seen.
+  constexpr int kRuns = 160;
   double sum = 0;
   for (std::uint32_t seed = 1; seed <= kRuns; ++seed) {
     SyntheticSceneOptions scene_options = Walkers(60, 0);
@@ -206,7 +214,8 @@ TEST(BundleTest, CovarianceMatchesTheScatterOfTheErrors) {
     const Vector6d error = Boxminus(problem.frames.back().T_W_C, scene.T_W_C.back());
     sum += error.dot(summary.newest_covariance->ldlt().solve(error));
   }
-  EXPECT_NEAR(sum / kRuns, 6, 2);
+  EXPECT_NEAR(sum / kRuns, 6, 1.1);
+  std::cout << "mean squared Mahalanobis distance: " << sum / kRuns << "\n";
 }
 
 /// A box of eight points that turns and drives, measured in camera axes by a camera that sees no

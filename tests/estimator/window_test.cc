@@ -2,6 +2,7 @@
 
 #include <iostream>
 #include <random>
+#include <set>
 
 #include "common/optimization/sliding_window.h"
 #include "tests/support/synthetic_scene.h"
@@ -182,7 +183,20 @@ TEST(SlidingWindowTest, OnlyWhatMovedIsReported) {
   window.bundle.max_iterations = 20;
   const std::vector<FrameResult> results = RunAll(window, scene);
   EXPECT_EQ(results[0].changes.landmarks.size(), scene.frames[0].features.size());
-  EXPECT_LT(results[11].changes.landmarks.size(), 20U);  // the new ones
+  // Each new one, and those of the frame before, which were placed before that was adjusted.
+  std::set<LandmarkId> old, newest, reported;
+  for (std::size_t k = 0; k < 12; ++k) {
+    for (const StaticObservation& feature : scene.frames[k].features) {
+      if (k < 10) old.insert(feature.id);
+      if (k == 11) newest.insert(feature.id);
+    }
+  }
+  for (const StaticObservation& feature : scene.frames[10].features) newest.erase(feature.id);
+  for (const auto& landmark : results[11].changes.landmarks) {
+    reported.insert(landmark.id);
+    EXPECT_EQ(old.count(landmark.id), 0U) << landmark.id.value;
+  }
+  for (const LandmarkId id : newest) EXPECT_EQ(reported.count(id), 1U - old.count(id)) << id.value;
   EXPECT_EQ(results[11].changes.frames.size(), 12U);
 }
 
@@ -207,6 +221,11 @@ TEST(WindowMapTest, MemoryIsBounded) {
     EXPECT_LE(map.window().size(), 12U);
     EXPECT_LT(map.landmarks().size(), 600U);
   }
+  EXPECT_EQ(map.frames().size(), 16U);  // 12 of the window and 4 key frames
+  EXPECT_EQ(map.window().size(), 12U);
+  // Frames 68 to 79 see ids of their own decade; key frames and five frames more keep some.
+  EXPECT_LT(map.landmarks().begin()->first.value, 7000);
+  EXPECT_GE(map.landmarks().begin()->first.value, 4000);
 }
 
 TEST(TrustRuleTest, EachConditionCounts) {
@@ -226,7 +245,7 @@ TEST(TrustRuleTest, EachConditionCounts) {
   other.num_motion_eliminated = 30;
   EXPECT_FALSE(TrustsPeople(options, 10, without, other, shift));  // they disagree
   other = with;
-  other.newest_covariance = 0.0095 * Matrix6d::Identity();
+  other.newest_covariance = 0.0085 * Matrix6d::Identity();         // 0.85 is more than 0.9 squared
   EXPECT_FALSE(TrustsPeople(options, 10, without, other, shift));  // they do not help
   other.newest_covariance.reset();
   EXPECT_FALSE(TrustsPeople(options, 10, without, other, shift));
