@@ -198,6 +198,36 @@ TEST(MapValuesTest, WhatComesLaterReplacesOnlyWhatItHas) {
   EXPECT_FALSE(frame.is_trusted_with_people);
 }
 
+// The optimizer's last word on a person comes without motions, as the frame before has left its
+// window: within a chunk and over the border of two.
+TEST(MapValuesTest, APersonsMotionsStayWhereTheRefinedStateHasNone) {
+  MapHuman refined = Human();
+  refined.part_motions.clear();
+  refined.joints[3].p_W = {10, 20, 30};
+  for (const bool is_one_chunk : {true, false}) {
+    FourDMap map;
+    MapDelta changes = Changes();
+    if (!is_one_chunk) {
+      changes.Apply(&map);
+      changes = MapDelta();
+    }
+    changes.SetHuman({17}, {29}, refined);
+    changes.Apply(&map);
+    const MapHuman& human = map.humans.at({{17}, {29}});
+    EXPECT_EQ(human.joints.at(3).p_W, Eigen::Vector3f(10, 20, 30));
+    ASSERT_EQ(human.part_motions.size(), 1u);
+    EXPECT_EQ(human.part_motions.at(5).t_W, Eigen::Vector3f(7, 8, 9));
+  }
+  FourDMap map;
+  Changes().Apply(&map);
+  MapDelta changes;
+  MapHuman moved = Human();
+  moved.part_motions = {{2, {{1, 1, 1}, Eigen::Quaternionf::Identity()}}};
+  changes.SetHuman({17}, {29}, moved);
+  changes.Apply(&map);
+  EXPECT_EQ(map.humans.at({{17}, {29}}).part_motions.count(5), 0u) << "new ones replace the old";
+}
+
 TEST(MapValuesTest, ALandmarkIsSetOrRemovedAsTheLastWordHasIt) {
   FourDMap map;
   map.landmarks[{1}] = map.landmarks[{2}] = {{9, 9, 9}, 1, 1};
