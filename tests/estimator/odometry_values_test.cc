@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "common/features/image_pyramid.h"
@@ -88,13 +89,13 @@ TEST(OdometryValues, SigmasGrowWithTheLevelFromThatOfTheirKind) {
         const bool is_corner = IsOfSomeLevel(sighting.sigma_px, 0.71);
         EXPECT_TRUE(is_aligned || (is_corner && !is_new)) << sighting.sigma_px;
         EXPECT_TRUE(aligns || is_new || is_corner) << sighting.sigma_px;
-        sigmas.insert(std::lround(1e4 * sighting.sigma_px));
+        if (!is_new) sigmas.insert(std::lround(1e4 * sighting.sigma_px));
         num_again += is_new ? 0 : 1;
         num_corners += is_corner && !is_new ? 1 : 0;
       }
     }
     EXPECT_GT(num_again, 100);
-    EXPECT_GE(sigmas.size(), 3u) << "several levels";
+    EXPECT_GE(sigmas.size(), 3u) << "of landmarks that were seen again, on several levels";
     EXPECT_EQ(num_corners > num_again / 2, !aligns);
   }
 }
@@ -122,6 +123,8 @@ TEST(OdometryValues, EachLandmarkKnowsInHowManyFramesItWasSeen) {
 TEST(OdometryValues, TheRightColumnIsThatOfTheDepthAndMissingWhereThereIsNone) {
   const RenderedScene scene(11);
   VisualOdometry odometry({});
+  std::set<std::int64_t> known;
+  int num_again = 0, num_again_with_right = 0;
   for (int k = 0; k < 4; ++k) {
     StereoImagePair images = Frame(k);
     if (k == 3) images.right = Blank(0);
@@ -130,6 +133,10 @@ TEST(OdometryValues, TheRightColumnIsThatOfTheDepthAndMissingWhereThereIsNone) {
     std::vector<double> errors_px;
     for (const LandmarkSighting& sighting : frame.sightings) {
       EXPECT_EQ(sighting.has_right && k == 3, false);
+      if (!known.insert(sighting.id.value).second && k < 3) {
+        ++num_again;
+        num_again_with_right += sighting.has_right ? 1 : 0;
+      }
       if (!sighting.has_right) {
         EXPECT_EQ(sighting.uvu_px.z(), 0);
         continue;
@@ -142,6 +149,60 @@ TEST(OdometryValues, TheRightColumnIsThatOfTheDepthAndMissingWhereThereIsNone) {
     ASSERT_GT(errors_px.size(), 50u);
     std::nth_element(errors_px.begin(), errors_px.begin() + 30, errors_px.end());
     EXPECT_LT(errors_px[30], 0.3);
+  }
+  EXPECT_GT(num_again, 100);
+  EXPECT_GT(num_again_with_right, 0.8 * num_again);
+}
+
+// Of the two bounds the stricter one counts where landmarks abound.
+TEST(OdometryValues, WhereLandmarksAboundNoBoundIsLowered) {
+  const auto num_new = [](double min_correlation, double rich_min_correlation) {
+    VisualOdometryOptions options;
+    options.rich_observations = 30;
+    options.stereo.min_correlation = min_correlation;
+    options.rich_min_correlation = rich_min_correlation;
+    VisualOdometry odometry(options);
+    std::size_t before = 0;
+    for (int k = 0; k < 3; ++k) {
+      before = odometry.map().landmarks().size();
+      odometry.Process(kCamera, Frame(k));
+    }
+    return odometry.map().landmarks().size() - before;
+  };
+  const std::size_t as_usual = num_new(0.9, 0.9);
+  EXPECT_GT(as_usual, 20u);
+  EXPECT_LT(num_new(0.9, 0.9995), as_usual / 2);
+  EXPECT_GT(num_new(0.9, 0.5), as_usual - 5) << "a lower one changes nothing";
+  EXPECT_LT(num_new(0.9, 0.5), as_usual + 5);
+}
+
+// Walking towards things they grow: a landmark that looks too different is known anew by how it
+// looks now, on a higher level of the pyramid; walking away, on a lower one.
+TEST(OdometryValues, AnApproachedLandmarkGoesToAHigherLevel) {
+  const RenderedScene scene(11);
+  for (const int direction : {1, -1}) {
+    VisualOdometry odometry({});
+    std::map<LandmarkId, std::pair<FrameId, int>> reference;  // frame, level
+    int num_up = 0, num_down = 0;
+    for (int k = 0; k < 14; ++k) {
+      Se3 T_W_C = SwayingPath(0);
+      T_W_C.translation += T_W_C.rotation * Eigen::Vector3d(0, 0, direction * (0.08 * k - 0.5));
+      const StereoPair pair = scene.Render(kCamera, T_W_C);
+      odometry.Process(kCamera, {FrameId{k}, 0.1 * k, pair.left, pair.right, {}, {}});
+      for (const auto& [id, landmark] : odometry.map().landmarks()) {
+        const auto [known, is_new] =
+            reference.try_emplace(id, landmark.reference_frame, landmark.reference_level);
+        if (is_new || known->second.first == landmark.reference_frame) continue;
+        num_up += landmark.reference_level > known->second.second ? 1 : 0;
+        num_down += landmark.reference_level < known->second.second ? 1 : 0;
+        EXPECT_LT(std::abs(landmark.reference_level - known->second.second), 3);
+        known->second = {landmark.reference_frame, landmark.reference_level};
+        const Eigen::Vector2d uv_px = kCamera.Project(landmark.p_C_reference);
+        EXPECT_LT((uv_px - landmark.reference_uv_px).norm(), 3) << "where it is in that image";
+      }
+    }
+    EXPECT_GT(direction > 0 ? num_up : num_down, 5);
+    EXPECT_LT(direction > 0 ? num_down : num_up, 2);
   }
 }
 

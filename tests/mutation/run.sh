@@ -222,12 +222,13 @@ judge() {
 # run_mutant WORKER I: leaves a line in result_I.tsv. The file is written anew both times, so that ninja sees the change.
 run_mutant() {
   local worker=$1 file=$1/source/${mutant_file[$2]} verdict
+  cp "$file" "$worker/original"
   FROM=${mutant_from[$2]} TO=${mutant_to[$2]} awk '
     { at = index($0, ENVIRON["FROM"])
       if (at > 0) $0 = substr($0, 1, at - 1) ENVIRON["TO"] substr($0, at + length(ENVIRON["FROM"]))
-      print }' "$AIRDOS_ROOT/${mutant_file[$2]}" > "$file"
+      print }' "$worker/original" > "$file"
   verdict=$(judge "$worker" "$2")
-  cp "$AIRDOS_ROOT/${mutant_file[$2]}" "$file"
+  cp "$worker/original" "$file"
   printf '%s\t%s\t%s -> %s\t%s\n' "${mutant_area[$2]}" "${mutant_file[$2]}" "${mutant_from[$2]}" "${mutant_to[$2]}" \
     "$verdict" > "$build/result_$2.tsv"
   say "$(($2 + 1))/$num_mutants ${mutant_file[$2]}: '${mutant_from[$2]}' -> '${mutant_to[$2]}': ${verdict/$'\t'/, }" >&2

@@ -2,6 +2,7 @@
 // field of what goes in and comes out.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <utility>
@@ -193,6 +194,42 @@ TEST(FrontendValues, TheMessageIsWhatTheOdometrySays) {
     EXPECT_EQ(frame.num_people, 2);
   }
   EXPECT_GT(num_without_right, 0);
+}
+
+TEST(FrontendValues, TheStateIsThatOfTheOdometry) {
+  FrontendOptions options = WithoutFeedback();
+  for (const bool is_weak : {false, true}) {
+    if (is_weak) options.odometry.min_inliers_tracking = 1000;
+    FrontendNode node(options);
+    Send(channel::kCalibration, Calibration(), &node);
+    for (int k = 0; k < 3; ++k) SendFrame(k, &node);
+    const std::vector<static_features_t> output = StepAll(&node);
+    ASSERT_EQ(output.size(), 3u);
+    EXPECT_EQ(output[0].tracking_state, kInitializing);
+    EXPECT_EQ(output[2].tracking_state, is_weak ? +static_features_t::STATE_WEAK : kTracking);
+  }
+}
+
+// Far walls lie so near to their left columns that a right image that is a copy would match.
+TEST(FrontendValues, WithoutARightImageNothingHasARightColumn) {
+  FrontendNode node(WithoutFeedback());
+  Send(channel::kCalibration, Calibration(), &node);
+  for (int k = 0; k < 4; ++k) {
+    Send(channel::kCameraLeft, Left(k), &node);
+    if (k < 3) Send(channel::kCameraRight, Right(k), &node);
+    Send(channel::kPersonMask, NoMask(k), &node);
+    SendNobody(k, &node);
+  }
+  while (node.Step() || node.CompleteOldest()) {
+  }
+  const std::vector<static_features_t> output = Take(&node);
+  ASSERT_EQ(output.size(), 4u);
+  const auto num_right = [](const static_features_t& message) {
+    return std::count(message.has_right.begin(), message.has_right.end(), 1);
+  };
+  EXPECT_GT(num_right(output[2]), 50);
+  EXPECT_GT(output[3].num_features, 50);
+  EXPECT_EQ(num_right(output[3]), 0);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -316,6 +317,20 @@ TEST_F(MapRecorderValuesTest, ExportsOnlyWhereItIsTold) {
     node.Finish();
     EXPECT_EQ(fs::exists(options.directory + "/trajectory.tum"), exports);
   }
+}
+
+TEST_F(MapRecorderValuesTest, EachKeyOfTheConfigurationIsInForce) {
+  ConfigReader config =
+      ConfigReader::FromFile(AIRDOS_SOURCE_DIR "/launch_scripts/config/map_recorder.yaml");
+  config.Override("output.directory=" + folder_);
+  config.Override("output.chunk_frames=2");
+  config.Override("output.export_at_end=false");
+  const std::unique_ptr<Node> node = MakeMapRecorderNode(&config);
+  config.Finish();
+  for (int seq = 0; seq < 4; ++seq) SendFrame(seq, node.get());
+  EXPECT_EQ(Summary().num_chunks, 3) << "the head and twice two frames";
+  node->Finish();
+  EXPECT_FALSE(fs::exists(folder_ + "/trajectory.tum"));
 }
 
 // What lies beside the map of a recorder that was killed counts only if it is of the same session;
