@@ -77,7 +77,8 @@ class MapDelta {
   void SetFrame(FrameId id, const MapFrame& frame);
   void SetLandmark(LandmarkId id, const MapLandmark& landmark);
   void RemoveLandmark(LandmarkId id);
-  void SetHuman(FrameId frame, HumanId human, MapHuman state);
+  /// Part motions that are not said again stay.
+  void SetHuman(FrameId frame, HumanId human, const MapHuman& state);
 
   bool empty() const;
   /// Of the chunk, to keep it below kMaxChunkBytes.

@@ -1,3 +1,6 @@
+#include <map>
+#include <utility>
+
 #include "common/human/skeleton.h"
 #include "common/map/byte_io.h"
 #include "common/map/four_d_map.h"
@@ -128,6 +131,14 @@ void Merge(const MapFrame& newer, MapFrame* frame) {
   if (newer.ground_truth) frame->ground_truth = newer.ground_truth;
 }
 
+/// Motions lead from the frame before; the last word on a person comes when that one has left the
+/// optimizer's window, and so without them: those that were known stay.
+void Merge(const MapHuman& newer, MapHuman* human) {
+  std::map<int, MapPartMotion> known = std::move(human->part_motions);
+  *human = newer;
+  if (human->part_motions.empty()) human->part_motions = std::move(known);
+}
+
 }  // namespace
 
 void MapDelta::SetFrame(FrameId id, const MapFrame& frame) { Merge(frame, &frames_[id]); }
@@ -142,8 +153,8 @@ void MapDelta::RemoveLandmark(LandmarkId id) {
   removed_.insert(id);
 }
 
-void MapDelta::SetHuman(FrameId frame, HumanId human, MapHuman state) {
-  humans_[{frame, human}] = std::move(state);
+void MapDelta::SetHuman(FrameId frame, HumanId human, const MapHuman& state) {
+  Merge(state, &humans_[{frame, human}]);
 }
 
 bool MapDelta::empty() const {
@@ -162,7 +173,7 @@ void MapDelta::Apply(FourDMap* map) const {
   for (const auto& [id, frame] : frames_) Merge(frame, &map->frames[id]);
   for (const LandmarkId id : removed_) map->landmarks.erase(id);
   for (const auto& [id, landmark] : landmarks_) map->landmarks[id] = landmark;
-  for (const auto& [key, human] : humans_) map->humans[key] = human;
+  for (const auto& [key, human] : humans_) Merge(human, &map->humans[key]);
 }
 
 MapChunk MapDelta::ToChunk() const {

@@ -11,3 +11,5 @@ set_tests_properties(benchmarks_test PROPERTIES LABELS system TIMEOUT 180 SKIP_R
 # Alone, as it measures how the chain gets on.
 add_test(NAME long_run_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/long_run_test.sh ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR})
 set_tests_properties(long_run_test PROPERTIES LABELS system TIMEOUT 600 SKIP_RETURN_CODE 77 RUN_SERIAL ON)
+add_test(NAME mutation_lists_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/mutation_lists_test.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(mutation_lists_test PROPERTIES LABELS system TIMEOUT 180)
