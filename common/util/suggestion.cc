@@ -23,12 +23,16 @@ bool StartsWith(const std::string& text, const std::string& start) {
 
 std::string LastPart(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
+constexpr int kNotNear = 1000;
+
 /// What a candidate costs as an explanation of a word; at most MaxCost() is near.
 int Cost(const std::string& word, const std::string& candidate) {
   constexpr std::size_t kMinCommonStart = 3;
   const std::string a = Plain(word);
   const std::string b = Plain(candidate);
-  int cost = 2 * EditDistance(a, b);
+  const int distance = EditDistance(a, b);
+  const bool shares_letters = distance < static_cast<int>(std::max(a.size(), b.size()));
+  int cost = shares_letters ? 2 * distance : kNotNear;
   const bool has_common_start =
       std::min(a.size(), b.size()) >= kMinCommonStart && (StartsWith(a, b) || StartsWith(b, a));
   if (has_common_start) cost = std::min(cost, 3);

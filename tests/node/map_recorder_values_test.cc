@@ -336,13 +336,18 @@ TEST_F(MapRecorderValuesTest, EachKeyOfTheConfigurationIsInForce) {
 // What lies beside the map of a recorder that was killed counts only if it is of the same session;
 // a map that has the next frame already is not gone on with.
 TEST_F(MapRecorderValuesTest, GoesOnOnlyWithWhatIsOfItsSessionAndEarlier) {
+  // As a recorder that is killed leaves its folder: copied before it ends, times of change and all.
   const auto leave_unfinished = [&] {
+    const fs::path kept = folder_ + "_kept";
     {
       MapRecorderNode node(Options());
       for (int seq = 0; seq < 3; ++seq) SendFrame(seq, &node);
-      fs::copy(folder_ + "/map.airdos", folder_ + "/kept");
+      fs::copy(folder_, kept, fs::copy_options::recursive);
+      for (const auto& file : fs::directory_iterator(kept))
+        fs::last_write_time(file, fs::last_write_time(fs::path(folder_) / file.path().filename()));
     }
-    fs::rename(folder_ + "/kept", folder_ + "/map.airdos");
+    fs::remove_all(folder_);
+    fs::rename(kept, folder_);
   };
   leave_unfinished();
   {

@@ -69,7 +69,7 @@ TEST(ConfigValuesTest, OverridesTakeWhatStandsBehindTheFirstEquals) {
   EXPECT_EQ(text, "x=y");
   reader.Read("a", &text);
   EXPECT_EQ(text, "1") << "the others stay";
-  EXPECT_EQ(reader.Resolved(), "a: 1\nb.c: x=y\n");
+  EXPECT_EQ(reader.Resolved(), "a: 1\nb.c: \"x=y\"\n");
   EXPECT_NO_THROW(reader.Finish());
   EXPECT_THROW(reader.Override("b=3"), InputError);
   EXPECT_THROW(reader.Override("a"), InputError);
