@@ -1,10 +1,14 @@
 #!/bin/bash
 # Runs the processes for a long time as they run on a robot: in realtime pace, a sequence at 10 Hz again and again as one long
-# session. Prints what was lost, how long frames took and how much memory each process has (Markdown).
+# session; or in lockstep, as fast as the machine is, with nothing else to be seen than that all goes on. Prints what was lost, how
+# long frames took and how much memory each process has (Markdown).
 #
-# Usage: launch_scripts/long_run.sh [FOLDER|LOG] [--minutes N] [--max-lost PERCENT] [--run-dir FOLDER]
+# Usage: launch_scripts/long_run.sh [FOLDER|LOG] [--minutes N] [--pace realtime|lockstep] [--max-lost PERCENT]
+#                                  [--run-dir FOLDER]
 #   FOLDER|LOG        what is played (default: the sample log)
 #   --minutes N       how long (default 30)
+#   --pace realtime|lockstep
+#                     lockstep: each frame waits until the one before is done, so nothing is lost however slow the machine is
 #   --max-lost PERCENT
 #                     of its frames that a process may skip, miss or complete without an input (default 0)
 #   --run-dir FOLDER  where everything goes (default logs/runs/long): long_run.md, memory.tsv (every 5 s: seconds, kB of memory
@@ -22,10 +26,10 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 readonly processes=(frontend human-tracker optimizer map-recorder)
 readonly sample_period_s=5
 
-data='' minutes=30 max_lost=0 run_dir=$AIRDOS_RUNS/long
+data='' minutes=30 pace=realtime max_lost=0 run_dir=$AIRDOS_RUNS/long
 while (($# > 0)); do
   case $1 in
-    --minutes | --max-lost | --run-dir)
+    --minutes | --pace | --max-lost | --run-dir)
       need_value "$@"
       name=${1#--}
       printf -v "${name//-/_}" '%s' "$2"
@@ -46,6 +50,7 @@ done
 data=${data:-$AIRDOS_ROOT/logs/road_crossing06.lcm}
 [[ -e $data ]] || die_usage "no folder or log '$data'"
 [[ $minutes =~ ^[1-9][0-9]*$ ]] || die_usage "--minutes: not a whole number above 0: '$minutes'"
+[[ $pace == realtime || $pace == lockstep ]] || die_usage "--pace: neither realtime nor lockstep: '$pace'"
 [[ $max_lost =~ ^(100|[0-9]{1,2})$ ]] || die_usage "--max-lost: not a whole number of 0 to 100: '$max_lost'"
 need_program airdos-stereo-player
 max_growth_percent=$((minutes < 3 ? 30 : 10))
@@ -55,7 +60,7 @@ loops=$((minutes * 60))
 
 mkdir -p "$run_dir"
 rm -f "$run_dir"/{memory.tsv,long_run.md}
-"$(dirname "$0")/run_live.sh" --data "$data" --loop "$loops" --pace realtime --run-dir "$run_dir" > "$run_dir/run_live.log" 2>&1 &
+"$(dirname "$0")/run_live.sh" --data "$data" --loop "$loops" --pace "$pace" --run-dir "$run_dir" > "$run_dir/run_live.log" 2>&1 &
 live_pid=$!
 trap 'kill -TERM "$live_pid" 2> /dev/null || true' EXIT
 

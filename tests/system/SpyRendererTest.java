@@ -239,20 +239,24 @@ final class SpyRendererTest {
     check(history.numUndecodable() == 4, "four undecodable messages");
   }
 
+  private static Object cell(StatusTableModel table, int row, String column) {
+    return table.getValueAt(row, StatusTableModel.Column.valueOf(column).ordinal());
+  }
+
   private static void statusTableNamesWhoIsStalledAndSilent() {
     StatusTableModel table = new StatusTableModel();
     table.add(SpyTestStream.status(8, "frontend"), 1000);
     table.add(SpyTestStream.status(9, "human_tracker"), 1000);
     check(table.getRowCount() == 2, "two processes");
-    check(table.isHealthy(0) && table.getValueAt(0, 1).equals("READY"), "frontend is ready");
-    check(!table.isHealthy(1) && table.getValueAt(1, 1).equals("STALLED"), "tracker is stalled");
-    check(table.getValueAt(0, 12).equals("01234567"), "which types it was built with");
-    check(table.getValueAt(1, 13).equals("PERSON_KEYPOINTS_RIGHT"), "and says for what");
-    check(table.getValueAt(0, 6).equals(2L) && table.getValueAt(0, 7).equals("21.5"), "figures");
+    check(table.isHealthy(0) && cell(table, 0, "STATE").equals("READY"), "frontend is ready");
+    check(!table.isHealthy(1) && cell(table, 1, "STATE").equals("STALLED"), "tracker is stalled");
+    check(cell(table, 0, "TYPES").equals("01234567"), "which types it was built with");
+    check(cell(table, 1, "WAITING_FOR").equals("PERSON_KEYPOINTS_RIGHT"), "and says for what");
+    check(cell(table, 0, "REJECTED").equals(2L) && cell(table, 0, "P50").equals("21.5"), "figures");
     check(
-        table.getValueAt(0, 15).equals("the images are not rectified | times go back"),
+        cell(table, 0, "WARNINGS").equals("the images are not rectified | times go back"),
         "what is doubtful, the newest first");
     table.refresh(1000 + StatusTableModel.SILENT_AFTER_MS + 1);
-    check(!table.isHealthy(0) && table.getValueAt(0, 1).equals("SILENT"), "frontend fell silent");
+    check(!table.isHealthy(0) && cell(table, 0, "STATE").equals("SILENT"), "frontend fell silent");
   }
 }

@@ -23,15 +23,12 @@ import lcm.lcm.LCMSubscriber;
 import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
-/** Opens for STATUS: one row for each process, red where it is not READY or has fallen silent. */
+/** Opens for STATUS: one row for each process, red where it is not READY or has fallen silent, yellow where it warns. */
 public final class StatusPlugin implements SpyPlugin {
   static final String NAME = "Processes";
   private static final String CHANNEL = "STATUS";
   private static final int REFRESH_MS = 500;
-  private static final Dimension SIZE = new Dimension(1420, 260);
-  private static final int[] COLUMN_WIDTHS = {
-    110, 75, 52, 75, 55, 55, 58, 52, 52, 90, 80, 50, 82, 170, 120, 240
-  };
+  private static final Dimension SIZE = new Dimension(1180, 260);
 
   public StatusPlugin() {}
 
@@ -86,10 +83,10 @@ public final class StatusPlugin implements SpyPlugin {
 
   static JTable newTable(StatusTableModel model) {
     JTable table = new JTable(model);
-    table.setAutoResizeMode(JTable.AUTO_RESIZE_LAST_COLUMN);
+    table.setAutoResizeMode(JTable.AUTO_RESIZE_OFF);
     TableColumnModel columns = table.getColumnModel();
-    for (int i = 0; i < COLUMN_WIDTHS.length; ++i) {
-      columns.getColumn(i).setPreferredWidth(COLUMN_WIDTHS[i]);
+    for (StatusTableModel.Column column : StatusTableModel.Column.values()) {
+      columns.getColumn(column.ordinal()).setPreferredWidth(column.widthPx);
     }
     table.setDefaultRenderer(Object.class, new HealthRenderer(model));
     return table;
@@ -97,6 +94,7 @@ public final class StatusPlugin implements SpyPlugin {
 
   private static final class HealthRenderer extends DefaultTableCellRenderer {
     private static final Color ALARM = new Color(0xFF, 0xCC, 0xCC);
+    private static final Color DOUBT = new Color(0xFF, 0xF4, 0xCC);
     private final transient StatusTableModel model;
 
     HealthRenderer(StatusTableModel model) {
@@ -108,7 +106,11 @@ public final class StatusPlugin implements SpyPlugin {
         JTable table, Object value, boolean isSelected, boolean hasFocus, int row, int column) {
       Component cell =
           super.getTableCellRendererComponent(table, value, isSelected, hasFocus, row, column);
-      if (!isSelected) cell.setBackground(model.isHealthy(row) ? Color.WHITE : ALARM);
+      setToolTipText(value == null || value.toString().isEmpty() ? null : value.toString());
+      if (!isSelected) {
+        Color healthy = model.hasWarnings(row) ? DOUBT : Color.WHITE;
+        cell.setBackground(model.isHealthy(row) ? healthy : ALARM);
+      }
       return cell;
     }
   }

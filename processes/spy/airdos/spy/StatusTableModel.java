@@ -7,6 +7,7 @@ import java.util.List;
 import java.util.Locale;
 import java.util.Map;
 import java.util.TreeMap;
+import java.util.function.Function;
 import javax.swing.table.AbstractTableModel;
 
 /** One row for each process, from its last STATUS. For Swing's thread only. */
@@ -14,11 +15,36 @@ final class StatusTableModel extends AbstractTableModel {
   /** A process speaks every second; after this long its row says so. */
   static final long SILENT_AFTER_MS = 3000;
 
-  private static final String[] COLUMNS = {
-    "process", "state", "frames", "incomplete", "skipped", "missing", "rejected",
-    "p50 ms", "p99 ms", "cpu ms/frame", "memory MB", "version", "types", "waiting for",
-    "last error", "warnings"
-  };
+  /** In this order: what the user must see first. */
+  enum Column {
+    PROCESS("process", 110, status -> status.process),
+    STATE("state", 75, status -> stateOf(status.state)),
+    WAITING_FOR("waiting for", 170, status -> status.waiting_for),
+    WARNINGS("warnings", 300, status -> newestFirst(status.warnings)), // not all of them fit
+    LAST_ERROR("last error", 120, status -> status.last_error),
+    FRAMES("frames", 52, status -> status.num_frames_done),
+    INCOMPLETE("incomplete", 75, status -> status.num_frames_incomplete),
+    SKIPPED("skipped", 55, status -> status.num_frames_skipped),
+    MISSING("missing", 55, StatusTableModel::numMissing),
+    REJECTED("rejected", 58, StatusTableModel::numRejected),
+    P50("p50 ms", 52, status -> tenths(status.latency_p50_ms)),
+    P99("p99 ms", 52, status -> tenths(status.latency_p99_ms)),
+    CPU("cpu ms/frame", 90, status -> tenths(status.cpu_ms_per_frame)),
+    MEMORY("memory MB", 80, status -> tenths(status.memory_mb)),
+    VERSION("version", 50, status -> status.version),
+    /** The same in each row, unless somebody was built with other message types. */
+    TYPES("types", 82, status -> beginning(status.types_fingerprint));
+
+    final String title;
+    final int widthPx;
+    private final Function<process_status_t, Object> value;
+
+    Column(String title, int widthPx, Function<process_status_t, Object> value) {
+      this.title = title;
+      this.widthPx = widthPx;
+      this.value = value;
+    }
+  }
 
   /** Digits of a fingerprint: enough to tell two apart. */
   private static final int SHOWN_OF_TYPES = 8;
@@ -53,6 +79,10 @@ final class StatusTableModel extends AbstractTableModel {
     return row.status.state == process_status_t.STATE_READY && !isSilent(row);
   }
 
+  boolean hasWarnings(int index) {
+    return rowAt(index).status.warnings.length > 0;
+  }
+
   private boolean isSilent(Row row) {
     return nowMs - row.heardAtMs > SILENT_AFTER_MS;
   }
@@ -69,52 +99,19 @@ final class StatusTableModel extends AbstractTableModel {
 
   @Override
   public int getColumnCount() {
-    return COLUMNS.length;
+    return Column.values().length;
   }
 
   @Override
   public String getColumnName(int column) {
-    return COLUMNS[column];
+    return Column.values()[column].title;
   }
 
   @Override
   public Object getValueAt(int index, int column) {
     Row row = rowAt(index);
-    process_status_t status = row.status;
-    switch (column) {
-      case 0:
-        return status.process;
-      case 1:
-        return isSilent(row) ? "SILENT" : stateOf(status.state);
-      case 2:
-        return status.num_frames_done;
-      case 3:
-        return status.num_frames_incomplete;
-      case 4:
-        return status.num_frames_skipped;
-      case 5:
-        return numMissing(status);
-      case 6:
-        return numRejected(status);
-      case 7:
-        return tenths(status.latency_p50_ms);
-      case 8:
-        return tenths(status.latency_p99_ms);
-      case 9:
-        return tenths(status.cpu_ms_per_frame);
-      case 10:
-        return tenths(status.memory_mb);
-      case 11:
-        return status.version;
-      case 12: // the same in each row, unless somebody was built with other message types
-        return beginning(status.types_fingerprint);
-      case 13:
-        return status.waiting_for;
-      case 14:
-        return status.last_error;
-      default: // the newest first, as not all of them fit
-        return newestFirst(status.warnings);
-    }
+    if (column == Column.STATE.ordinal() && isSilent(row)) return "SILENT";
+    return Column.values()[column].value.apply(row.status);
   }
 
   private static long numMissing(process_status_t status) {
