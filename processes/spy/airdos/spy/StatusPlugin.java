@@ -23,7 +23,10 @@ import lcm.lcm.LCMSubscriber;
 import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
-/** Opens for STATUS: one row for each process, red where it is not READY or has fallen silent, yellow where it warns. */
+/**
+ * Opens for STATUS: one row for each process, red where it is not READY or has fallen silent, yellow
+ * where it warns.
+ */
 public final class StatusPlugin implements SpyPlugin {
   static final String NAME = "Processes";
   private static final String CHANNEL = "STATUS";
