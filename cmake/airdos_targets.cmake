@@ -23,12 +23,33 @@ if(AIRDOS_BUILD_FUZZERS)
   target_link_options(airdos_options INTERFACE ${airdos_fuzzer_flags})
 endif()
 
+# The headers of others that most units read, compiled once for our code and once for the tests (which define other macros).
+function(airdos_precompile name)
+  if(AIRDOS_PRECOMPILED_HEADERS)
+    file(WRITE ${CMAKE_BINARY_DIR}/generated/${name}.cc "// Carries the precompiled headers.\n")
+    add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/generated/${name}.cc)
+    target_link_libraries(${name} PRIVATE airdos_options Eigen3::Eigen opencv_core)
+    target_precompile_headers(${name} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <map>
+                              <memory> <optional> <set> <sstream> <string> <utility> <vector>
+                              <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <opencv2/core.hpp> ${ARGN})
+  endif()
+endfunction()
+airdos_precompile(airdos_pch)
+
+# airdos_use_precompiled(TARGET PCH)
+function(airdos_use_precompiled name pch)
+  if(TARGET ${pch})
+    target_precompile_headers(${name} REUSE_FROM ${pch})
+  endif()
+endfunction()
+
 # airdos_library(NAME SOURCES a.cc b.cc DEPS other libraries)
 function(airdos_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC ${ARG_DEPS} PRIVATE airdos_options)
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
+  airdos_use_precompiled(${name} airdos_pch)
 endfunction()
 
 # Everything that runs, without the tests.
@@ -39,9 +60,12 @@ function(airdos_program name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPS} airdos_options)
   add_dependencies(airdos_programs ${name})
+  airdos_use_precompiled(${name} airdos_pch)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
+# What is tested is optimized as it runs; optimizing the tests would only take time.
+set(airdos_test_options -O1)
 # airdos_test(NAME TIER SOURCES x_test.cc DEPS libraries): a GoogleTest executable; the tier is its ctest label
 function(airdos_test name tier)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS" ${ARGN})
@@ -53,6 +77,8 @@ function(airdos_test name tier)
   target_compile_definitions(${name} PRIVATE AIRDOS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              AIRDOS_BINARY_DIR="${CMAKE_BINARY_DIR}"
                                              _GLIBCXX_ASSERTIONS)
+  target_compile_options(${name} PRIVATE ${airdos_test_options})
+  airdos_use_precompiled(${name} airdos_test_pch)
   if(NOT TARGET airdos_tests_${tier})  # all tests of one tier
     add_custom_target(airdos_tests_${tier})
   endif()
