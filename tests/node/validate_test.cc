@@ -73,6 +73,18 @@ TEST(ValidateTest, Calibration) {
   ExpectReject<M>("baseline_m -0.1", [](M* m) { m->baseline_m = -0.1; });
 }
 
+TEST(ValidateTest, KeypointsOfNobodyNeedNoNumberOfJoints) {
+  person_keypoints_t message = Sample<person_keypoints_t>();
+  message.num_people = 0;
+  for (auto* rows : {&message.u_px, &message.v_px, &message.confidence}) rows->clear();
+  for (const int num_joints : {0, 17, 18, 99}) {
+    message.num_joints = num_joints;
+    EXPECT_EQ(Validate(message), "");
+  }
+  message.layout = person_keypoints_t::LAYOUT_INVALID;
+  EXPECT_NE(Validate(message), "");
+}
+
 TEST(ValidateTest, Keypoints) {
   using M = person_keypoints_t;
   ExpectReject<M>("layout 0", [](M* m) { m->layout = M::LAYOUT_INVALID; });
