@@ -93,6 +93,35 @@ make_script() {
   chmod +x "$work/bin/$1"
 }
 
+# link_tools NAME…: a folder with these programs only, for a PATH on which nothing else is found, whatever the machine has.
+link_tools() {
+  local tool
+  mkdir "$work/tools"
+  for tool in "$@"; do
+    ln -s "$(command -v "$tool")" "$work/tools/$tool"
+  done
+}
+
+# make_program PATH: as make_script, writes down its name and arguments first; `fails NAME` there asks FAILS.
+make_program() {
+  {
+    cat << PROGRAM
+#!/bin/bash
+echo "\${0##*/} \$*" >> "$work/calls"
+fails() { [[ " \${FAILS:-} " == *" \$1 "* ]]; }
+PROGRAM
+    cat
+  } > "$1"
+  chmod +x "$1"
+}
+
+# started PATTERN: how many calls there were since the last fresh.
+started() { grep -cE -e "$1" "$work/calls" || true; }
+fresh() { : > "$work/calls"; }
+
+# ran COUNT PATTERN
+ran() { (($(started "$2") == $1)) || fail "not $1 calls of '$2': $(cat "$work/calls")"; }
+
 # make_process NAME: says READY after its arguments and waits; ends with 0 on SIGTERM, with the code that tell sends it.
 # It opens the FIFO for writing too, so as not to see the end of a file.
 make_process() {
@@ -119,9 +148,10 @@ skip_unless_networks() {
 
 # start_live ARGUMENT…: run_live.sh with the stand-ins, in the background; its folder is run.
 live_pid=
+live=$scripts/run_live.sh
 start_live() {
   rm -rf "$work/run" "$work/live.out" "$work/live.err"
-  env AIRDOS_BIN="$work/bin" PATH="$work/bin:$PATH" "$scripts/run_live.sh" --run-dir "$work/run" "$@" \
+  env AIRDOS_BIN="$work/bin" PATH="$work/bin:$PATH" "$live" --run-dir "$work/run" "$@" \
     > "$work/live.out" 2> "$work/live.err" < /dev/null &
   live_pid=$!
 }

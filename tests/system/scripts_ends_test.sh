@@ -9,28 +9,6 @@ source "$(dirname "${BASH_SOURCE[0]}")/script_checks.sh"
 readonly root=$work/root
 readonly demo=$root/launch_scripts/demo.sh test=$root/launch_scripts/test.sh fuzz=$root/launch_scripts/fuzz.sh
 
-# Only what is named here is found, whatever compilers the machine has.
-link_tools() {
-  local tool
-  mkdir "$work/tools"
-  for tool in awk basename cat chmod ctest cut diff dirname du env grep ln mkdir nproc rm sed sh tail tee touch uname wc; do
-    ln -s "$(command -v "$tool")" "$work/tools/$tool"
-  done
-}
-
-# make_program PATH: as make_script, writes down its name and arguments first; `fails NAME` there asks FAILS.
-make_program() {
-  {
-    cat << PROGRAM
-#!/bin/bash
-echo "\${0##*/} \$*" >> "$work/calls"
-fails() { [[ " \${FAILS:-} " == *" \$1 "* ]]; }
-PROGRAM
-    cat
-  } > "$1"
-  chmod +x "$1"
-}
-
 make_builders() {
   make_program "$work/bin/dpkg-query" << 'FAKE'
 fails "$3" && exit 1
@@ -113,13 +91,6 @@ make_root() {
   make_demo_programs
   make_fuzzers
 }
-
-# started PATTERN: how many calls there were since the last fresh.
-started() { grep -cE -e "$1" "$work/calls" || true; }
-fresh() { : > "$work/calls"; }
-
-# ran COUNT PATTERN
-ran() { (($(started "$2") == $1)) || fail "not $1 calls of '$2': $(cat "$work/calls")"; }
 
 # --- demo.sh
 
@@ -289,6 +260,7 @@ test_runs_all_and_says_so() {
   ends_with out "$well"
   says_not out FAILED
   says_not out skipped
+  (($(grep -c 'tests passed' "$work/out") == 2)) || fail "not one closing line each: $(cat "$work/out")"
   grep -E '^cmake|_first ' "$work/calls" | sed 's/ -j.*--target//; s/ -D.*//; s/ -max_len.*//' > "$work/steps"
   diff "$work/steps" - << CALLS || fail "other calls"
 cmake -S $root -B $root/build-sanitize -G Ninja
@@ -405,7 +377,7 @@ test_leaves_out_what_it_is_told_to() {
   ends_with out "$well"
 }
 
-link_tools
+link_tools awk basename cat chmod ctest cut diff dirname du env grep ln mkdir nproc rm sed sh tail tee touch uname wc
 make_root
 ln -s "$work/clang++" "$work/bin/clang++"
 export PATH=$work/bin:$work/tools
