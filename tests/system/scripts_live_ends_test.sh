@@ -119,9 +119,10 @@ replay_into_a_run_that_has_ended_is_refused() {
 replay_that_is_interrupted_leaves_nobody() {
   local pid got=0
   make_run $$
+  rm -f "$work/network_of_player"
   HOLD=1 "$scripts/replay_log.sh" "$log" --run-dir "$work/run" > "$work/replay.out" 2>&1 < /dev/null &
   pid=$!
-  await "the player" grep -qs lcm-logplayer "$work/calls"
+  await "the player" test -s "$work/network_of_player"
   [[ $(pids_of lcm-logplayer) == "$pid" ]] || fail "the player $(pids_of lcm-logplayer) is not the script $pid"
   kill -TERM "$pid"
   wait "$pid" || got=$?
