@@ -74,6 +74,7 @@ case $name in
       touch "${prefix}crash-0abc"
       exit 77
     fi
+    fails slow && mkdir "${0%/*}/running" && sleep 0.2 && rmdir "${0%/*}/running"
     echo "#8 DONE   cov: 12 ft: 34 corp: 5/6b"
     echo "stat::number_of_executed_units: 56"
     echo "end of $name" >> "${0%/*}/../ended"
@@ -189,6 +190,12 @@ fuzz_names_the_input_that_fails_and_runs_the_others() {
   done
   FAILS='second third' run 1 "$fuzz" --jobs 2
   ends_with out 'fuzz.sh: 3 targets for 10 s each, 2 failed'
+}
+
+# Each finds the folder that another has made.
+fuzz_runs_so_many_at_a_time() {
+  FAILS=slow run 0 "$fuzz" --jobs 1
+  ! grep -q 'File exists' "$root"/build-fuzz/*.log || fail "two at a time"
 }
 
 fuzz_runs_only_what_was_named() {
@@ -377,7 +384,7 @@ test_leaves_out_what_it_is_told_to() {
   ends_with out "$well"
 }
 
-link_tools awk basename cat chmod ctest cut diff dirname du env grep ln mkdir nproc rm sed sh tail tee touch uname wc
+link_tools awk basename cat chmod ctest cut diff dirname du env grep ln mkdir nproc rm rmdir sed sh sleep tail tee touch uname wc
 make_root
 ln -s "$work/clang++" "$work/bin/clang++"
 export PATH=$work/bin:$work/tools
@@ -388,6 +395,7 @@ demo_ends_with_the_step_that_fails
 demo_installs_what_is_missing
 fuzz_says_how_far_each_target_came
 fuzz_names_the_input_that_fails_and_runs_the_others
+fuzz_runs_so_many_at_a_time
 fuzz_runs_only_what_was_named
 fuzz_without_a_build_ends_at_once
 test_runs_all_and_says_so

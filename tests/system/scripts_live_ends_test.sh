@@ -218,6 +218,19 @@ while :; do read -r -u 3; done
 FAKE
 }
 
+# The optimizer works for about half a second of processor time, and fails if it is ended before it has done so.
+live_waits_for_what_was_sent() {
+  change IDLE_S 3
+  make_optimizer 'done=7; trap "exit \$done" TERM; echo "airdos-optimizer: READY now"
+    read -r -u 3 3<> "'"$work"'/airdos-optimizer.fifo"
+    for ((i = 0; i < 200000; ++i)); do :; done; done=0'
+  start_live --data "$log"
+  await "the player" grep -qs "everything has been sent" "$work/live.out"
+  tell airdos-optimizer go
+  end_live 0
+  restore
+}
+
 live_says_what_its_processes_say() {
   make_optimizer 'echo "airdos-optimizer: READY now"; echo "airdos-optimizer: warning: it is dark"
     trap "echo airdos-optimizer: poses: 7 from images; exit 1" TERM'
@@ -318,6 +331,7 @@ live_ends_when_all_have_ended
 live_ends_as_its_player_does
 live_refuses_before_it_starts_anybody
 live_that_is_killed_leaves_nobody
+live_waits_for_what_was_sent
 live_says_what_its_processes_say
 live_kills_who_does_not_end
 live_that_is_interrupted_early_is_well
