@@ -219,6 +219,7 @@ FAKE
 }
 
 # The optimizer works for about half a second of processor time, and fails if it is ended before it has done so.
+# shellcheck disable=SC2016
 live_waits_for_what_was_sent() {
   change IDLE_S 3
   make_optimizer 'done=7; trap "exit \$done" TERM; echo "airdos-optimizer: READY now"
