@@ -185,8 +185,9 @@ live_ends_when_all_have_ended() {
   all_ended 0
   ready
   tell airdos-frontend 5
-  await "the report" grep -q "frontend ended with exit code 5; the others go on. To start it again:" "$work/live.out"
-  live_says out "nsenter -t $live_pid -n -- $work/bin/airdos-frontend --lcm-url '$url' --pace lockstep"
+  await "how to start it again" grep -qF "nsenter -t $live_pid -n -- $work/bin/airdos-frontend --lcm-url '$url' --pace lockstep" \
+    "$work/live.out"
+  live_says out "frontend ended with exit code 5; the others go on. To start it again:"
   for process in human-tracker optimizer map-recorder; do tell "airdos-$process" 0; done
   end_live 1
   live_says out "run_live.sh: frontend: exit code 5"
