@@ -136,6 +136,9 @@ growth_fails_above_the_limit() {
   memory 900 900 100 90 100 130 120 110
   long_run 0 ''
   says out '| optimizer | 100 | 0 | 0 | 0 | 12.5 | 40.5 | 900.0 | 110.0 | 30.0 |'
+  memory 900 900 100 120 90 90 90 90
+  long_run 0 ''
+  says out ' | -25.0 |'
   memory 900 900 90 100 131 100 100 100
   long_run 1 'a process grew by more than 30 %'
   says out ' | 31.0 |'
@@ -146,11 +149,15 @@ growth_fails_above_the_limit() {
 }
 
 bad_run_fails() {
+  local name
   good_figures
   FAILS=early long_run 1 "the run ended early: see $results/run_live.log"
   good_figures
   FAILS=end long_run 1 "a process ended badly: see $results/run_live.log"
+  # That there are figures of an earlier run changes nothing.
   good_figures
+  mkdir "$results"
+  for name in memory.tsv long_run.md; do echo earlier > "$results/$name"; done
   FAILS=state long_run 1 "nothing was measured: see $results/run_live.log"
   [[ ! -e $results/long_run.md ]] || fail "a table of nothing"
 }
