@@ -70,7 +70,7 @@ link_to() { ln -sf airdos_fuzz "$FOLDER/bin/airdos_fuzz_$1"; }
 
 # run_target NAME MAX_BYTES: false if it failed.
 run_target() {
-  local name=$1 max_bytes=$2 corpus=$FOLDER/corpus/$1 log=$FOLDER/$1.log
+  local name=$1 max_bytes=$2 corpus=$FOLDER/corpus/$1 log=$FOLDER/$1.log input
   mkdir -p "$corpus" "$FOLDER/failures"
   link_to "$name"
   # 64 MB for one allocation; a whole process of sanitized code needs more than one of ours.
@@ -81,7 +81,8 @@ run_target() {
       "$(sed -n 's/.* cov: \([0-9]*\) .*/\1/p' "$log" | tail -n 1)"
   else
     grep -m 1 -E 'ERROR|runtime error|fuzz check|terminate' "$log" || tail -n 3 "$log"
-    say "$name FAILED (log: $log)" >&2
+    input=$(sed -n 's/.*Test unit written to //p' "$log" | tail -n 1)
+    say "$name FAILED${input:+ on $input} (log: $log)" >&2
     return 1
   fi
 }
@@ -94,6 +95,10 @@ if [[ $list == yes ]]; then
 fi
 if [[ $build_only == yes ]]; then exit 0; fi
 
+mapfile -t all < <("$FOLDER/bin/airdos_fuzz_list")
+for name in "${targets[@]}"; do
+  [[ " ${all[*]%% *} " == *" $name "* ]] || die_usage "no such target: '$name' (see --list)"
+done
 "$FOLDER/bin/airdos_fuzz_seeds" "$FOLDER/seeds" "$AIRDOS_ROOT/logs/road_crossing06.lcm"
 failed=0 num_ended=0
 pids=()
@@ -104,7 +109,6 @@ await_target() {
   num_ended=$((num_ended + 1))
 }
 
-mapfile -t all < <("$FOLDER/bin/airdos_fuzz_list")
 for target in "${all[@]}"; do
   read -r name max_bytes <<< "$target"
   if ((${#targets[@]} > 0)) && [[ " ${targets[*]} " != *" $name "* ]]; then continue; fi
@@ -113,6 +117,6 @@ for target in "${all[@]}"; do
   pids+=($!)
 done
 while ((num_ended < ${#pids[@]})); do await_target; done
-((${#pids[@]} > 0)) || die_usage "no such target: ${targets[*]} (see --list)"
+((${#pids[@]} > 0)) || die "airdos_fuzz_list names no targets"
 say "${#pids[@]} targets for $seconds s each, $failed failed"
 ((failed == 0))

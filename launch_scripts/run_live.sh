@@ -162,9 +162,9 @@ show_news() {
   done
 }
 
-# Sources first, the recorder last, so that it keeps what the others still say.
+# finish [CODE]: sources first, the recorder last, so that it keeps what the others still say. Exit with CODE at least.
 finish() {
-  local name bad=0
+  local name bad=${1:-0}
   for name in player "${PROCESSES[@]}"; do
     if [[ -n ${pids[$name]:-} ]]; then stop "$name"; fi
   done
@@ -193,9 +193,9 @@ wait_until_ready() {
       tail -n 5 "$run_dir/$name.log" >&2
       say "$name ended before it was ready" >&2
       consult_doctor
-      finish
+      finish 1
     fi
-    ((SECONDS < deadline)) || { say "$name is not READY after $READY_DEADLINE_S s" >&2 && consult_doctor && finish; }
+    ((SECONDS < deadline)) || { say "$name is not READY after $READY_DEADLINE_S s" >&2 && consult_doctor && finish 1; }
     [[ $stopping == no ]] || finish
     pause 0.05
   done

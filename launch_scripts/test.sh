@@ -75,6 +75,9 @@ fi
 if [[ $fuzz == yes ]]; then run_fuzzers || failures=1; fi
 
 configure_and_build "$AIRDOS_ROOT/build" all -DCMAKE_BUILD_TYPE=Release
-if ((failures > 0)); then say "tests or fuzz targets FAILED under the sanitizers (see above); now the others"; fi
+sanitized_failures=$failures
+if ((sanitized_failures > 0)); then say "tests or fuzz targets FAILED under the sanitizers (see above); now the others"; fi
 run_tests "$AIRDOS_ROOT/build" || failures=1
+# Else the last line might be that all tests passed.
+if ((sanitized_failures > 0)); then say "FAILED: tests or fuzz targets under the sanitizers (see above)"; fi
 exit "$failures"

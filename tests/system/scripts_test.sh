@@ -4,42 +4,8 @@
 # Usage: scripts_test.sh SOURCE_DIR
 set -euo pipefail
 
-readonly scripts=$1/launch_scripts
-work=$(mktemp -d)
-live_pid=
-cleanup() {
-  if [[ -n $live_pid ]]; then kill -TERM "$live_pid" 2> /dev/null || true; fi
-  rm -rf "$work"
-}
-trap cleanup EXIT
-
-fail() {
-  echo "FAILED: $*"
-  exit 1
-}
-
-# expect CODE TEXT COMMAND…: the exit code, and one line on stderr that has the text.
-expect() {
-  local code=$1 text=$2 got=0
-  shift 2
-  "$@" > "$work/out" 2> "$work/err" < /dev/null || got=$?
-  ((got == code)) || fail "$*: exit code $got, not $code: $(cat "$work/out" "$work/err")"
-  if ((code != 0)); then
-    (($(wc -l < "$work/err") == 1)) || fail "$*: not one line: $(cat "$work/err")"
-    grep -qF -e "$text" "$work/err" || fail "$*: '$(cat "$work/err")' does not say '$text'"
-  else
-    grep -qF -e "$text" "$work/out" || fail "$*: '$(cat "$work/out")' does not say '$text'"
-  fi
-}
-
-await() {
-  local what=$1 deadline=$((SECONDS + 60))
-  shift
-  until "$@"; do
-    ((SECONDS < deadline)) || fail "$what did not come: $(tail -n 20 "$work"/live.out "$work"/live.err 2> /dev/null)"
-    sleep 0.05
-  done
-}
+# shellcheck source=tests/system/script_checks.sh
+source "$(dirname "${BASH_SOURCE[0]}")/script_checks.sh"
 
 each_script_says_its_version() {
   local script name
@@ -75,39 +41,6 @@ wrong_options_exit_2_in_one_line() {
   expect 1 "airdos-frontend is missing: build first" env AIRDOS_BIN="$work/none" "$scripts/run_live.sh"
 }
 
-# make_program NAME: says READY after its arguments, ends with 0 on SIGTERM.
-make_program() {
-  cat > "$work/bin/$1" << 'FAKE'
-#!/bin/bash
-trap 'echo "end of $0"; exit 0' TERM
-echo "$0 READY $*"
-while :; do sleep 0.05; done
-FAKE
-  chmod +x "$work/bin/$1"
-}
-
-start_live() {
-  rm -rf "$work/run" "$work/live.out" "$work/live.err"
-  env AIRDOS_BIN="$work/bin" PATH="$work/bin:$PATH" "$scripts/run_live.sh" --run-dir "$work/run" "$@" \
-    > "$work/live.out" 2> "$work/live.err" < /dev/null &
-  live_pid=$!
-}
-
-end_live() {
-  local expected=$1 got=0
-  wait "$live_pid" || got=$?
-  live_pid=
-  ((got == expected)) || fail "run_live.sh: exit code $got, not $expected: $(cat "$work/live.out" "$work/live.err")"
-}
-
-# pids_of NAME: of the stand-ins that run from this test's folder. (pgrep is no part of a small Debian.)
-pids_of() {
-  local folder
-  for folder in /proc/[0-9]*; do
-    if tr '\0' ' ' 2> /dev/null < "$folder/cmdline" | grep -qF "$work/bin/$1"; then echo "${folder#/proc/}"; fi
-  done
-}
-
 processes_start_and_end_together() {
   start_live
   await "READY" grep -qs "READY: frontend" "$work/live.out"
@@ -124,25 +57,30 @@ processes_start_and_end_together() {
   done
 }
 
-# kill_sleep_of PID: ends a sleep that this process waits for, as Ctrl-C does.
-kill_sleep_of() {
-  local status
-  for status in /proc/[0-9]*/status; do
-    if grep -qs "^Name:.sleep" "$status" && grep -qs "^PPid:.$1\$" "$status"; then
-      status=${status#/proc/}
-      kill -TERM "${status%/status}" 2> /dev/null && return 0
-    fi
-  done
-  return 1
+# A sleep that says its number and waits, once there is a file hold_sleep.
+make_sleep() {
+  mkfifo "$work/sleep.fifo"
+  make_script sleep << FAKE
+[[ -e "$work/hold_sleep" ]] || exec "$(command -v sleep)" "\$@"
+exec 3<> "$work/sleep.fifo"
+echo "\$\$" > "$work/sleeping"
+read -r -u 3
+FAKE
 }
 
+# Ctrl-C reaches the script, which sees it when its sleep has ended, and that sleep, which fails.
 stops_in_order_although_the_signal_ends_its_sleep() {
+  make_sleep
   start_live
   await "READY" grep -qs "READY: frontend" "$work/live.out"
-  await "a sleep of the script" kill_sleep_of "$live_pid"
+  : > "$work/hold_sleep"
+  await "a sleep of the script" test -s "$work/sleeping"
+  rm "$work/hold_sleep"
   kill -TERM "$live_pid"
+  kill -TERM "$(cat "$work/sleeping")"
   end_live 0
   grep -q "map-recorder: exit code 0" "$work/live.out" || fail "not stopped in order: $(cat "$work/live.out")"
+  rm "$work/bin/sleep"
 }
 
 others_go_on_when_one_is_killed() {
@@ -170,17 +108,12 @@ failing_start_is_said() {
   end_live 1
   grep -q "no such key: typo" "$work/live.err" || fail "the reason is not shown: $(cat "$work/live.err")"
   grep -q "optimizer ended before it was ready" "$work/live.err" || fail "not said: $(cat "$work/live.err")"
-  [[ -z $(pids_of airdos-) ]] || fail "processes are left behind"
 }
 
 each_script_says_its_version
 wrong_options_exit_2_in_one_line
-if ! unshare -n true 2> /dev/null && ! unshare -r -n true 2> /dev/null; then
-  echo "SKIPPED: no right to make a network namespace"
-  exit 77
-fi
-mkdir "$work/bin"
-for program in frontend human-tracker optimizer map-recorder; do make_program "airdos-$program"; done
+skip_unless_networks
+for program in frontend human-tracker optimizer map-recorder; do make_process "airdos-$program"; done
 processes_start_and_end_together
 stops_in_order_although_the_signal_ends_its_sleep
 others_go_on_when_one_is_killed
