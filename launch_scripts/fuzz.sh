@@ -102,6 +102,12 @@ done
 "$FOLDER/bin/airdos_fuzz_seeds" "$FOLDER/seeds" "$AIRDOS_ROOT/logs/road_crossing06.lcm"
 failed=0 num_ended=0
 pids=()
+# Whoever ends this script ends its targets.
+end_targets() {
+  local pid
+  for pid in "${pids[@]:num_ended}"; do kill -TERM -- "-$pid" 2> /dev/null || true; done
+}
+trap end_targets EXIT
 
 # Until the one that runs longest has ended; they all take as long.
 await_target() {
@@ -113,7 +119,9 @@ for target in "${all[@]}"; do
   read -r name max_bytes <<< "$target"
   if ((${#targets[@]} > 0)) && [[ " ${targets[*]} " != *" $name "* ]]; then continue; fi
   if ((${#pids[@]} - num_ended >= jobs)); then await_target; fi
+  set -m # a process group each, to be ended as a whole
   run_target "$name" "$max_bytes" &
+  set +m
   pids+=($!)
 done
 while ((num_ended < ${#pids[@]})); do await_target; done

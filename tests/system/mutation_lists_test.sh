@@ -51,7 +51,7 @@ expect 1 'no mutant, or no reason' --list --lists "$folder"
 
 # Each of the programs that are named is a test of ours.
 while read -r test; do
-  grep -rqs "airdos_test($test " "$source"/tests/*/CMakeLists.txt "$source"/tests/*/*.cmake || grep -rqs "foreach(name.* $test[ )]" \
+  grep -rqs "airdos_test($test " "$source"/tests/*/CMakeLists.txt "$source"/tests/*/*.cmake || grep -rqs "foreach(name.* ${test}[ )]" \
     "$source"/tests/*/CMakeLists.txt || fail "there is no test '$test'"
 done < <(grep -hv '^#' "$source"/tests/mutation/mutants_*.txt | sed '/^$/d; s/.* | //' | tr ' ' '\n' | sort -u)
 

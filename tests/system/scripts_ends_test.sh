@@ -74,6 +74,9 @@ case $name in
       touch "${prefix}crash-0abc"
       exit 77
     fi
+    if fails hang; then
+      mkfifo "$0.fifo" && exec 3<> "$0.fifo" && read -r -u 3
+    fi
     fails slow && mkdir "${0%/*}/running" && sleep 0.2 && rmdir "${0%/*}/running"
     echo "#8 DONE   cov: 12 ft: 34 corp: 5/6b"
     echo "stat::number_of_executed_units: 56"
@@ -215,6 +218,19 @@ fuzz_runs_only_what_was_named() {
   run 0 "$fuzz" --build-only
   ran 1 'cmake --build'
   ran 0 airdos_fuzz_
+}
+
+fuzz_that_is_ended_leaves_nobody() {
+  local pid got=0 target=$root/build-fuzz/bin/airdos_fuzz_first
+  nobody_is_left() { [[ -z $(pids_of airdos_fuzz_) ]]; }
+  FAILS=hang "$fuzz" --jobs 2 > "$work/hung.out" 2>&1 < /dev/null &
+  pid=$!
+  await "the first target" test -p "$target.fifo"
+  kill -TERM "$pid"
+  wait "$pid" || got=$?
+  ((got == 143)) || fail "exit code $got: $(cat "$work/hung.out")"
+  await "the end of its targets" nobody_is_left
+  rm -f "$root"/build-fuzz/bin/*.fifo
 }
 
 fuzz_without_a_build_ends_at_once() {
@@ -386,7 +402,7 @@ test_leaves_out_what_it_is_told_to() {
   ends_with out "$well"
 }
 
-link_tools awk basename cat chmod ctest cut diff dirname du env grep ln mkdir nproc rm rmdir sed sh sleep tail tee touch uname wc
+link_tools awk basename cat chmod ctest cut diff dirname du env grep ln mkdir mkfifo nproc rm rmdir sed sh sleep tail tee touch uname wc
 make_root
 ln -s "$work/clang++" "$work/bin/clang++"
 export PATH=$work/bin:$work/tools
@@ -399,6 +415,7 @@ fuzz_says_how_far_each_target_came
 fuzz_names_the_input_that_fails_and_runs_the_others
 fuzz_runs_so_many_at_a_time
 fuzz_runs_only_what_was_named
+fuzz_that_is_ended_leaves_nobody
 fuzz_without_a_build_ends_at_once
 test_runs_all_and_says_so
 test_runs_the_normal_build_although_the_sanitized_fails
