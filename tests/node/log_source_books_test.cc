@@ -1,8 +1,10 @@
 // The frames of a log: where each begins, which messages are believed, how sessions follow on one
 // another; and the log itself where it was damaged, by sizes worked out by hand.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -325,6 +327,27 @@ TEST_F(EventLogBooksTest, ALogThatIsBeingWrittenIsNotEmptied) {
     ADD_FAILURE() << "two writers would leave a mixture";
   } catch (const InputError& error) {
     EXPECT_EQ(error.what(), path_ + ": cannot be written: another program is writing it");
+  }
+  EXPECT_EQ(Bytes().size(), 33u);
+}
+
+// Half an event may lie at the end of a log that could not be written: nothing may come behind it.
+TEST_F(EventLogBooksTest, AfterAFailedWriteTheLogIsClosed) {
+  std::signal(SIGXFSZ, SIG_IGN);  // then write() fails as on a full disk
+  EventLogWriter log(path_);
+  log.Append(5, "AB", "xyz", 3);
+  rlimit before = {};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit limit{40, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &limit);
+  EXPECT_THROW(log.Append(6, "AB", "xyz", 3), WriteError);
+  setrlimit(RLIMIT_FSIZE, &before);
+  try {
+    log.Append(7, "AB", "xyz", 3);
+    ADD_FAILURE();
+  } catch (const WriteError& error) {
+    EXPECT_EQ(error.what(),
+              path_ + ": is closed after a failed write; the 1 events before are kept");
   }
   EXPECT_EQ(Bytes().size(), 33u);
 }
