@@ -168,6 +168,17 @@ TEST_F(LogSurveyTest, CalibrationsThatComeLateOrChangeAreCounted) {
             "so 2 of 5 messages\n");
 }
 
+// Ground truth is nothing that a log must have.
+TEST_F(LogSurveyTest, ChannelsWithoutAMessageAreNamed) {
+  AddCalibration(0);
+  AddImages(channel::kCameraLeft, {0, 1, 2});
+  AddImages(channel::kCameraRight, {0, 1, 2});
+  EXPECT_EQ(Report("log.count"),
+            "warning PERSON_KEYPOINTS_LEFT: no message, for 3 of CAMERA_LEFT\n"
+            "warning PERSON_KEYPOINTS_RIGHT: no message, for 3 of CAMERA_LEFT\n"
+            "warning PERSON_MASK: no message, for 3 of CAMERA_LEFT\n");
+}
+
 TEST_F(LogSurveyTest, TheLargestMessageIsNamed) {
   AddCalibration(0);
   Add(channel::kCameraLeft, Image(0, kSession, 400, 350));  // 136.7 kB of pixels
