@@ -105,7 +105,11 @@ TEST_F(CheckBeforeRunTest, TheCalibrationThatIsAskedForIsUsed) {
   fs::remove(Data() + "/calib.json");
   const std::string without = Check(Data());
   EXPECT_EQ(without.find("THROWN: "), 0u) << without;
-  EXPECT_NE(Check(Data(), kPublicCalibration), without);
+  EXPECT_NE(without.find("calib.json: is not there"), std::string::npos) << without;
+  // It is there, and of another size.
+  const std::string with = Check(Data(), kPublicCalibration);
+  EXPECT_NE(with.find("with 320 x 192 px is not of the public set (640 x 360)"), std::string::npos)
+      << with;
 }
 
 // ---- Where the poses came from ----
