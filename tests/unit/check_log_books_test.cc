@@ -173,7 +173,10 @@ TEST_F(LogSurveyTest, ChannelsWithoutAMessageAreNamed) {
   AddCalibration(0);
   AddImages(channel::kCameraLeft, {0, 1, 2});
   AddImages(channel::kCameraRight, {0, 1, 2});
-  EXPECT_EQ(Report("log.count"),
+  FindingList findings;
+  LogSurvey(path_).Report(&findings);
+  EXPECT_EQ(findings.count(Severity::kWarning), 3);
+  EXPECT_EQ(Said(findings, "log.count", path_),
             "warning PERSON_KEYPOINTS_LEFT: no message, for 3 of CAMERA_LEFT\n"
             "warning PERSON_KEYPOINTS_RIGHT: no message, for 3 of CAMERA_LEFT\n"
             "warning PERSON_MASK: no message, for 3 of CAMERA_LEFT\n");
