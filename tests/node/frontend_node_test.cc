@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -146,6 +147,16 @@ TEST(FrontendNode, TheOrderInWhichChannelsArriveDoesNotMatter) {
   const Stream calibration = {Wrap(channel::kCalibration, Calibration())};
   const auto expected = Outputs({calibration, left, right, mask, humans, keypoints}, 1, true);
   ASSERT_EQ(expected.size(), static_cast<std::size_t>(kNumFrames));
+  for (int k = 0; k < kNumFrames; ++k) {
+    static_features_t features;
+    const auto& bytes = expected[static_cast<std::size_t>(k)];
+    ASSERT_TRUE(Decode(bytes.data(), bytes.size(), &features));
+    EXPECT_EQ(features.seq, k);
+    EXPECT_GT(features.num_features, 50) << k;
+    // Frame 3 has no right image.
+    const bool has_right = std::count(features.has_right.begin(), features.has_right.end(), 1) > 0;
+    EXPECT_EQ(has_right, k != 3) << k;
+  }
   EXPECT_EQ(Outputs({keypoints, mask, right, left, calibration, humans}, 1, true), expected);
   EXPECT_EQ(Outputs({humans, right, keypoints, calibration, mask, left}, 2, true), expected);
   EXPECT_EQ(Outputs({left, mask, right, calibration, humans, keypoints}, 100, true), expected);

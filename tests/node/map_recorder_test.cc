@@ -216,6 +216,16 @@ TEST_F(MapRecorderTest, TheFileDoesNotDependOnHowChannelsInterleave) {
   const std::string a = BytesOf(folder_ + "/a/map.airdos");
   EXPECT_FALSE(a.empty());
   EXPECT_EQ(a, BytesOf(folder_ + "/b/map.airdos"));
+  // And it is the right one: of Recording(10) each frame, and landmarks 0 and 6 to 9.
+  const FourDMap map = Read(folder_ + "/b");
+  ASSERT_EQ(map.frames.size(), 10u);
+  EXPECT_EQ(map.frames.at({8}).live->translation.x(), 8);
+  EXPECT_EQ(map.frames.at({8}).refined->translation.x(), 8.25);
+  EXPECT_EQ(map.frames.at({9}).ground_truth->translation.y(), 9);
+  EXPECT_EQ(map.landmarks.size(), 5u);
+  EXPECT_EQ(map.landmarks.at({0}).num_observations, 10);
+  EXPECT_EQ(map.landmarks.at({9}).p_W.x(), 19);
+  EXPECT_EQ(map.humans.size(), 10u);
 }
 
 TEST_F(MapRecorderTest, PartsOfAnUpdateAreTakenInOrder) {

@@ -76,6 +76,30 @@ class ReplayTest : public testing::Test {
   std::string folder_;
 };
 
+// What the chain says is known: two frames back the frontend hears the optimizer, by its length.
+TEST_F(ReplayTest, TheOutputIsThisText) {
+  WriteInputLog("in.lcm", 4);
+  RunReplay("in.lcm", "out.lcm");
+  EventLogReader reader(folder_ + "out.lcm");
+  std::string text;
+  while (const auto event = reader.Next()) {
+    frame_done_t message;
+    ASSERT_TRUE(Decode(event->payload.data(), event->payload.size(), &message));
+    text += std::to_string(event->number) + " " + std::to_string(event->utime) + " " +
+            event->channel + " " + std::to_string(message.session) + "." +
+            std::to_string(message.seq) + " " + message.process + "\n";
+  }
+  EXPECT_EQ(text,
+            "0 0 STATIC_FEATURES 7.0 frontend(left0,right,back -)\n"
+            "1 0 STATE_ESTIMATE 7.0 optimizer(frontend(left0,right,back -),-,)\n"
+            "2 1000 STATIC_FEATURES 7.1 frontend(left1,right,back -)\n"
+            "3 1000 STATE_ESTIMATE 7.1 optimizer(frontend(left1,right,back -),-,)\n"
+            "4 2000 STATIC_FEATURES 7.2 frontend(left2,right,back 42)\n"
+            "5 2000 STATE_ESTIMATE 7.2 optimizer(frontend(left2,right,back 42),-,)\n"
+            "6 3000 STATIC_FEATURES 7.3 frontend(left3,right,back 42)\n"
+            "7 3000 STATE_ESTIMATE 7.3 optimizer(frontend(left3,right,back 42),-,)\n");
+}
+
 TEST_F(ReplayTest, TwiceGivesTheSameBytes) {
   WriteInputLog("in.lcm", 10);
   const ReplayResult first = RunReplay("in.lcm", "1.lcm");

@@ -166,6 +166,19 @@ TEST_F(LiveTest, ReplayTwiceGivesTheSameBytesInOneThreadAndInSeveral) {
     EXPECT_FALSE(first.empty());
     EXPECT_TRUE(first == Bytes(folder_ + other)) << name;
   }
+  // And both have what the log asks for: one message for each of its frames, in their order.
+  for (const char* channel :
+       {channel::kStaticFeatures, channel::kHumanObservations, channel::kStateEstimate}) {
+    EXPECT_EQ(DigestLog(folder_ + "2.lcm").at(channel).num_messages, num_frames_) << channel;
+  }
+  EventLogReader reader(folder_ + "2.lcm");
+  std::int64_t num_estimates = 0;
+  while (const auto event = reader.Next()) {
+    if (event->channel != channel::kStateEstimate) continue;
+    const Header header = *PeekHeader(event->payload.data(), event->payload.size());
+    EXPECT_EQ(header.seq, last_.seq - num_frames_ + ++num_estimates);
+    EXPECT_EQ(header.session, last_.session);
+  }
 }
 
 TEST_F(LiveTest, ProcessesFedByLogplayerSayWhatReplayComputes) {
