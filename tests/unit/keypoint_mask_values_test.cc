@@ -1,6 +1,5 @@
 // Keypoints and masks of people, and what else lies in their folders, value by value.
 #include <gtest/gtest.h>
-#include <png.h>
 
 #include <string>
 
@@ -10,6 +9,7 @@
 #include "common/human/body_keypoints.h"
 #include "common/util/error.h"
 #include "common/util/image_header.h"
+#include "tests/support/palette_png.h"
 #include "tests/support/scratch_folder.h"
 
 namespace airdos {
@@ -78,29 +78,6 @@ TEST_F(KeypointMaskValuesTest, TwoLayoutsAreRefusedWithBothNames) {
   const std::string error = ErrorOf([&] { FindLayout({a, b, c}); });
   EXPECT_EQ(error, c + ": holds people in Halpe-26, but " + a +
                        " in COCO-18; one layout a data set is wanted");
-}
-
-/// A PNG with a palette, which OpenCV does not write.
-std::vector<std::uint8_t> PalettePng(const std::vector<png_color>& palette, int width,
-                                     const std::vector<std::uint8_t>& indices) {
-  std::vector<std::uint8_t> bytes;
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
-  png_infop info = png_create_info_struct(png);
-  const auto append = [](png_structp of, png_bytep data, png_size_t size) {
-    auto* to = static_cast<std::vector<std::uint8_t>*>(png_get_io_ptr(of));
-    to->insert(to->end(), data, data + size);
-  };
-  png_set_write_fn(png, &bytes, append, nullptr);
-  const int height = static_cast<int>(indices.size()) / width;
-  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
-               PNG_COLOR_TYPE_PALETTE, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
-  png_set_PLTE(png, info, palette.data(), static_cast<int>(palette.size()));
-  png_write_info(png, info);
-  for (int row = 0; row < height; ++row) png_write_row(png, indices.data() + row * width);
-  png_write_end(png, info);
-  png_destroy_write_struct(&png, &info);
-  return bytes;
 }
 
 std::vector<std::uint8_t> Png(const cv::Mat& picture) {
