@@ -93,7 +93,9 @@ std::vector<FuzzBytes> MaskSeeds() {
                         Encoded(".png", Ramp(CV_8UC3)), Encoded(".png", Ramp(CV_16UC3)),
                         Encoded(".png", Ramp(CV_8UC4)),
                         Encoded(".png", bits, {cv::IMWRITE_PNG_BILEVEL, 1}),
-                        PalettePng({{0, 0, 0}, {200, 0, 0}, {0, 200, 0}}, 3, {0, 1, 2, 0, 0, 1})});
+                        PalettePng({{0, 0, 0}, {200, 0, 0}, {0, 200, 0}}, 3, {0, 1, 2, 0, 0, 1}),
+                        PalettePng({{0, 0, 0}, {200, 0, 0}, {0, 200, 0}}, 3, {0, 1, 2, 0, 0, 1},
+                                   PNG_INTERLACE_ADAM7)});
 }
 
 // --- camera images

@@ -108,6 +108,16 @@ TEST(MaskValuesTest, IndicesOfAPaletteWhateverTheirColours) {
   }
 }
 
+TEST(MaskValuesTest, AnInterlacedMaskIsReadInAllItsPasses) {
+  std::vector<std::uint8_t> indices;
+  for (int i = 0; i < 11 * 10; ++i) indices.push_back(static_cast<std::uint8_t>(i % 3));
+  const PersonMask mask =
+      Decoded(PalettePng({kBlack, kRed, kGreen}, 11, indices, PNG_INTERLACE_ADAM7));
+  ASSERT_EQ(mask.values.size(), cv::Size(11, 10));
+  for (int i = 0; i < 11 * 10; ++i)
+    EXPECT_EQ(mask.values.at<std::uint8_t>(i / 11, i % 11), i % 3) << i;
+}
+
 TEST(MaskValuesTest, ABackgroundThatIsNotBlackIsADoubtWhereBlackIsThere) {
   const std::vector<std::uint8_t> indices = {0, 1};
   EXPECT_EQ(Decoded(PalettePng({kRed, kBlue}, 2, indices)).doubt, "");
