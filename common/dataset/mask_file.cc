@@ -68,13 +68,16 @@ bool DecodeRows(png_structp png, png_infop info, ByteSource* source, const Image
   png_set_user_limits(png, static_cast<png_uint_32>(header.width),
                       static_cast<png_uint_32>(header.height));
   png_read_info(png, info);
+  const auto height = static_cast<std::size_t>(header.height);
+  const std::size_t pixel_bytes =
+      png_get_channels(png, info) * (png_get_bit_depth(png, info) == 16 ? 2U : 1U);
+  // Before libpng makes room for a row of them.
+  if (static_cast<std::size_t>(header.width) * pixel_bytes > kMaxSampleBytes / height) return false;
   png_set_packing(png);  // 1, 2 and 4 bits into a byte each, not scaled
   if (png_get_bit_depth(png, info) == 16) png_set_swap(png);
   const int num_passes = png_set_interlace_handling(png);
   png_read_update_info(png, info);
   const png_size_t row_bytes = png_get_rowbytes(png, info);
-  const auto height = static_cast<std::size_t>(header.height);
-  if (row_bytes > kMaxSampleBytes / height) return false;
   ReadPalette(png, info, out);
   out->bytes_per_sample = png_get_bit_depth(png, info) == 16 ? 2 : 1;
   out->num_channels = png_get_channels(png, info);
