@@ -7,12 +7,14 @@
 #include <string>
 
 #include "common/check/check_camera.h"
+#include "common/check/check_files.h"
 #include "common/check/check_findings.h"
 #include "common/check/check_images.h"
 #include "common/check/check_input.h"
 #include "common/check/check_jpeg.h"
 #include "common/check/check_stereo.h"
 #include "common/check/check_times.h"
+#include "tests/support/scratch_folder.h"
 
 namespace airdos {
 namespace {
@@ -182,6 +184,19 @@ TEST(CheckCameraValuesTest, PrincipalPointByEachSide) {
   EXPECT_EQ(
       OfCamera("camera.principal_point", [](StereoCamera* c) { std::swap(c->cx_px, c->cy_px); }),
       "error");
+}
+
+TEST(CheckFilesValuesTest, WhatIsNotReadIsAnErrorWhereNothingElseIsThere) {
+  const ScratchFolder folder("check_files_values");
+  for (const char* name : {"image_0/0.png", "image_0/0.tif", "image_1/0.png"}) folder.Write(name);
+  FindingList list;
+  ReportUnreadFiles(folder.path(), &list);
+  EXPECT_EQ(SeverityOf(list, "folder.unread"), "warning");
+  EXPECT_EQ(FirstOf(list, "folder.unread").where, folder.PathOf("image_0"));
+  std::filesystem::remove(folder.PathOf("image_0/0.png"));
+  FindingList only;
+  ReportUnreadFiles(folder.path(), &only);
+  EXPECT_EQ(SeverityOf(only, "folder.unread"), "error");
 }
 
 SurveyedImage Image(const std::string& path) {
