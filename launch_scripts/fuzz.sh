@@ -3,7 +3,7 @@
 # libFuzzer under the address and undefined-behaviour sanitizers, and runs each for some seconds.
 #
 # Usage: launch_scripts/fuzz.sh [--seconds N] [--jobs N] [--build-only] [TARGET…]
-#   --seconds N   for each target (default 10; an hour in all for the 24 targets: 150)
+#   --seconds N   for each target (default 10; an hour in all for the 28 targets: 130)
 #   --jobs N      so many targets at a time (default: one a processor)
 #   --build-only  do not run
 #   --list        the names of the targets (after a build)

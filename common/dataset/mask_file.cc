@@ -42,8 +42,8 @@ void Ignore(png_structp /*png*/, png_const_charp /*message*/) {}
 struct PngSamples {
   int bytes_per_sample = 1;
   int num_channels = 1;
+  std::size_t row_bytes = 0;
   std::vector<png_byte> samples;
-  std::vector<png_bytep> rows;
   bool is_index_0_black = true;  // of a palette
   bool has_black = false;
 };
@@ -68,20 +68,26 @@ bool DecodeRows(png_structp png, png_infop info, ByteSource* source, const Image
   png_set_user_limits(png, static_cast<png_uint_32>(header.width),
                       static_cast<png_uint_32>(header.height));
   png_read_info(png, info);
+  const auto height = static_cast<std::size_t>(header.height);
+  const std::size_t pixel_bytes =
+      png_get_channels(png, info) * (png_get_bit_depth(png, info) == 16 ? 2U : 1U);
+  // Before libpng makes room for a row of them.
+  if (static_cast<std::size_t>(header.width) * pixel_bytes > kMaxSampleBytes / height) return false;
   png_set_packing(png);  // 1, 2 and 4 bits into a byte each, not scaled
   if (png_get_bit_depth(png, info) == 16) png_set_swap(png);
-  png_set_interlace_handling(png);
+  const int num_passes = png_set_interlace_handling(png);
   png_read_update_info(png, info);
   const png_size_t row_bytes = png_get_rowbytes(png, info);
-  const auto height = static_cast<std::size_t>(header.height);
-  if (row_bytes > kMaxSampleBytes / height) return false;
   ReadPalette(png, info, out);
   out->bytes_per_sample = png_get_bit_depth(png, info) == 16 ? 2 : 1;
   out->num_channels = png_get_channels(png, info);
+  out->row_bytes = row_bytes;
   out->samples.resize(row_bytes * height);
-  out->rows.resize(height);
-  for (std::size_t i = 0; i < height; ++i) out->rows[i] = out->samples.data() + i * row_bytes;
-  png_read_image(png, out->rows.data());
+  // Not png_read_image(): it wants a pointer a row, eight times the samples of a narrow image.
+  for (int pass = 0; pass < num_passes; ++pass) {
+    for (std::size_t i = 0; i < height; ++i)
+      png_read_row(png, out->samples.data() + i * row_bytes, nullptr);
+  }
   png_read_end(png, nullptr);
   return true;
 }
@@ -101,7 +107,8 @@ template <class Sample>
 cv::Mat LargestSamples(const PngSamples& png, const ImageHeader& header, int type) {
   cv::Mat values(static_cast<int>(header.height), static_cast<int>(header.width), type);
   for (int row = 0; row < values.rows; ++row) {
-    const auto* from = reinterpret_cast<const Sample*>(png.rows[static_cast<std::size_t>(row)]);
+    const auto* from = reinterpret_cast<const Sample*>(
+        png.samples.data() + static_cast<std::size_t>(row) * png.row_bytes);
     auto* to = values.ptr<Sample>(row);
     for (int i = 0; i < values.cols; ++i, from += png.num_channels)
       to[i] = *std::max_element(from, from + png.num_channels);

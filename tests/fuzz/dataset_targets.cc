@@ -192,8 +192,8 @@ std::vector<FuzzTarget> DatasetTargets() {
 
 std::vector<FuzzTarget> FuzzTargets() {
   std::vector<FuzzTarget> all;
-  for (const auto& group :
-       {NodeTargets(), MessageTargets(), FileTargets(), DatasetTargets(), EvaluationTargets()})
+  for (const auto& group : {NodeTargets(), MessageTargets(), FileTargets(), DatasetTargets(),
+                            PictureTargets(), EvaluationTargets()})
     all.insert(all.end(), group.begin(), group.end());
   return all;
 }
