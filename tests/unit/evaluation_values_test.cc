@@ -301,7 +301,7 @@ TEST(FrozenPosesValuesTest, CountWhereTheTruthMoves) {
   matched.ground_truth[3] = matched.ground_truth[2];
   matched.ground_truth[3].position_m.x() += 0.0009;
   EXPECT_EQ(CountFrozenPoses(matched), 0u);
-  matched.ground_truth[3].rotation = Pose(0.06, Vector3d::UnitY(), {}).rotation;
+  matched.ground_truth[3].rotation = Pose(0.06, Vector3d::UnitY(), Vector3d::Zero()).rotation;
   EXPECT_EQ(CountFrozenPoses(matched), 1u);
 }
 
