@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/optimization/sliding_window.h"
+#include "common/optimization/window/sliding_window.h"
 
 namespace airdos {
 

@@ -7,7 +7,7 @@
 #include "airdos/map_update_t.hpp"
 #include "airdos/state_estimate_t.hpp"
 #include "airdos/static_features_t.hpp"
-#include "common/optimization/sliding_window.h"
+#include "common/optimization/window/sliding_window.h"
 #include "processes/node/frame_joiner.h"
 
 namespace airdos {

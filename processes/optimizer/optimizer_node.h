@@ -8,7 +8,7 @@
 #include "airdos/human_observations_t.hpp"
 #include "airdos/static_features_t.hpp"
 #include "common/config/config_reader.h"
-#include "common/optimization/sliding_window.h"
+#include "common/optimization/window/sliding_window.h"
 #include "processes/node/frame_node.h"
 #include "processes/node/run_tally.h"
 #include "processes/optimizer/landmark_archive.h"

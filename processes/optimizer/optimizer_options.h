@@ -2,7 +2,7 @@
 #define AIRDOS_PROCESSES_OPTIMIZER_OPTIMIZER_OPTIONS_H_
 
 #include "common/config/config_reader.h"
-#include "common/optimization/sliding_window.h"
+#include "common/optimization/window/sliding_window.h"
 
 namespace airdos {
 

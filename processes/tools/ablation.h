@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "common/optimization/bundle_adjuster.h"
-#include "common/optimization/track_noise.h"
+#include "common/optimization/bundle/bundle_adjuster.h"
+#include "common/optimization/window/track_noise.h"
 #include "common/simulation/feature_simulator.h"
 
 namespace airdos {

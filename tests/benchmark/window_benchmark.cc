@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "common/optimization/sliding_window.h"
+#include "common/optimization/window/sliding_window.h"
 #include "tests/support/synthetic_scene.h"
 
 // What one frame costs the sliding window: processor time (other work must not count) of the frames

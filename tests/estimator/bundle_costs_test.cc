@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "common/optimization/bundle_adjuster.h"
+#include "common/optimization/bundle/bundle_adjuster.h"
 
 // What each factor costs at the start values, worked by hand: weights, kernels and what is joined
 // with what.

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "common/optimization/bundle_adjuster.h"
+#include "common/optimization/bundle/bundle_adjuster.h"
 
 // One wrong measurement of each kind, just below and just above the limit of its own kind, and what
 // is counted where.

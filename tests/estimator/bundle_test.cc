@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "common/optimization/bundle_adjuster.h"
-#include "common/optimization/human_tracks.h"
-#include "common/optimization/window_map.h"
+#include "common/optimization/bundle/bundle_adjuster.h"
+#include "common/optimization/window/human_tracks.h"
+#include "common/optimization/window/window_map.h"
 #include "tests/support/synthetic_scene.h"
 
 namespace airdos {

@@ -1,4 +1,4 @@
-#include "common/optimization/human_tracks.h"
+#include "common/optimization/window/human_tracks.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "common/optimization/track_noise.h"
+#include "common/optimization/window/track_noise.h"
 
 // What is learnt of a few measurements, against the posterior in closed form: all measurements at
 // once and a fine grid, where the code has a filter and a coarse one.

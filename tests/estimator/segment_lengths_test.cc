@@ -1,4 +1,4 @@
-#include "common/optimization/segment_lengths.h"
+#include "common/optimization/window/segment_lengths.h"
 
 #include <gtest/gtest.h>
 

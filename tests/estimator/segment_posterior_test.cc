@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "common/optimization/segment_lengths.h"
+#include "common/optimization/window/segment_lengths.h"
 
 // The posterior of segment_lengths.h once more, over fine grids, for a few frames.
 

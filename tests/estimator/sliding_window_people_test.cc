@@ -4,9 +4,9 @@
 #include <map>
 #include <vector>
 
-#include "common/optimization/human_tracks.h"
-#include "common/optimization/sliding_window.h"
-#include "common/optimization/window_map.h"
+#include "common/optimization/window/human_tracks.h"
+#include "common/optimization/window/sliding_window.h"
+#include "common/optimization/window/window_map.h"
 #include "tests/estimator/window_frames.h"
 #include "tests/support/synthetic_scene.h"
 

@@ -1,4 +1,4 @@
-#include "common/optimization/sliding_window.h"
+#include "common/optimization/window/sliding_window.h"
 
 #include <gtest/gtest.h>
 

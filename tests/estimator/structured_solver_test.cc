@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "common/optimization/bundle_adjuster.h"
-#include "common/optimization/bundle_graph.h"
-#include "common/optimization/ceres_minimizer.h"
-#include "common/optimization/human_factors.h"
-#include "common/optimization/structured_minimizer.h"
+#include "common/optimization/bundle/bundle_adjuster.h"
+#include "common/optimization/bundle/bundle_graph.h"
+#include "common/optimization/factors/human_factors.h"
+#include "common/optimization/solver/ceres_minimizer.h"
+#include "common/optimization/solver/structured_minimizer.h"
 #include "tests/support/allocation_watch.h"
 #include "tests/support/random_bundle.h"
 

@@ -1,4 +1,4 @@
-#include "common/optimization/track_noise.h"
+#include "common/optimization/window/track_noise.h"
 
 #include <gtest/gtest.h>
 

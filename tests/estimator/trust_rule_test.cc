@@ -1,4 +1,4 @@
-#include "common/optimization/trust_rule.h"
+#include "common/optimization/window/trust_rule.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "common/optimization/sliding_window.h"
+#include "common/optimization/window/sliding_window.h"
 
 // What the tests of the sliding window feed it with: a camera on a path of its own before a small
 // cloud of points, all exact.

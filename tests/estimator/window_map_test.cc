@@ -1,4 +1,4 @@
-#include "common/optimization/window_map.h"
+#include "common/optimization/window/window_map.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <random>
 #include <set>
 
-#include "common/optimization/sliding_window.h"
+#include "common/optimization/window/sliding_window.h"
 #include "tests/support/synthetic_scene.h"
 
 namespace airdos {

@@ -7,11 +7,11 @@
 #include <random>
 #include <vector>
 
-#include "common/optimization/camera_acceleration_factor.h"
-#include "common/optimization/camera_point_factor.h"
-#include "common/optimization/human_factors.h"
-#include "common/optimization/pose_manifold.h"
-#include "common/optimization/reprojection_factor.h"
+#include "common/optimization/factors/camera_acceleration_factor.h"
+#include "common/optimization/factors/camera_point_factor.h"
+#include "common/optimization/factors/human_factors.h"
+#include "common/optimization/factors/reprojection_factor.h"
+#include "common/optimization/solver/pose_manifold.h"
 
 namespace airdos {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "common/optimization/bundle_adjuster.h"
-#include "common/optimization/bundle_problem.h"
+#include "common/optimization/bundle/bundle_adjuster.h"
+#include "common/optimization/bundle/bundle_problem.h"
 
 namespace airdos {
 

@@ -8,7 +8,7 @@
 #include "common/geometry/se3.h"
 #include "common/geometry/stereo_camera.h"
 #include "common/human/skeleton.h"
-#include "common/optimization/frame_input.h"
+#include "common/optimization/window/frame_input.h"
 
 namespace airdos {
 

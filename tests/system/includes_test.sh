@@ -14,6 +14,7 @@ violations() {
       rank["features"] = rank["map"] = rank["dataset"] = rank["simulation"] = 4
       rank["evaluation"] = rank["perception"] = 4
       rank["optimization"] = rank["check"] = 5
+      room["solver"] = 0; room["factors"] = 1; room["bundle"] = 2; room["window"] = 3  # of common/optimization
       clock = "<(thread|chrono|mutex|shared_mutex|condition_variable|future|ctime|time.h|sys/time.h|pthread.h)>"
     }
     function complain(why) { print FILENAME ": " $0 ": " why }
@@ -39,6 +40,9 @@ violations() {
     in_common && to[1] == "common" && to[2] != folder && !(rank[to[2]] < rank[folder]) {
       complain("common/" folder " stands below common/" to[2] " or beside it")
     }
+    in_common && folder == "optimization" && to[2] == folder && to[3] != path[3] && !(room[to[3]] < room[path[3]]) {
+      complain("the room " path[3] " stands below " to[3])
+    }
     !in_common && to[1] == "processes" && to[2] != folder && to[2] != "node" && folder != "tools" {
       complain("processes meet only at channels")
     }
@@ -54,7 +58,7 @@ fail() {
 # First that the check sees what it is there for.
 fixture=$(mktemp -d)
 trap 'rm -rf "$fixture"' EXIT
-mkdir -p "$fixture"/common/{util,geometry,map,dataset,newcomer} "$fixture"/processes/{node,frontend,optimizer,tools}
+mkdir -p "$fixture"/common/{util,geometry,map,dataset,newcomer,optimization/{solver,factors,bundle,window}} "$fixture"/processes/{node,frontend,optimizer,tools}
 bad() { printf '%s\n' "$2" > "$fixture/$1"; }
 bad common/util/a.h '#include "common/geometry/se3.h"'
 bad common/map/b.cc '#include "common/dataset/stereo_sequence.h"'
@@ -68,7 +72,9 @@ bad processes/frontend/h.cc '#include "lcm/lcm-cpp.hpp"'
 bad processes/frontend/i.cc '#include "processes/optimizer/optimizer_node.h"'
 bad processes/node/j.cc '#include "processes/frontend/frontend_node.h"'
 bad processes/optimizer/k.cc 'Subscribe(channel::kGroundTruth);'
-readonly NUM_BAD=12
+bad common/optimization/factors/l.h '#include "common/optimization/bundle/bundle_problem.h"'
+readonly NUM_BAD=13
+bad common/optimization/window/ok.cc '#include "common/optimization/solver/factor_graph.h"'
 bad common/map/ok.cc '#include "common/util/ids.h"'
 bad processes/node/ok.cc '#include <lcm/lcm-cpp.hpp>'
 bad processes/node/ok2.cc '#include <chrono>'

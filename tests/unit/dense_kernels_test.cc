@@ -1,4 +1,4 @@
-#include "common/optimization/dense_kernels.h"
+#include "common/optimization/solver/dense_kernels.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,96 @@
+#ifndef AIRDOS_COMMON_OPTIMIZATION_WINDOW_WINDOW_MAP_H_
+#define AIRDOS_COMMON_OPTIMIZATION_WINDOW_WINDOW_MAP_H_
+
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "common/geometry/stereo_camera.h"
+#include "common/optimization/bundle/bundle_problem.h"
+#include "common/optimization/window/frame_input.h"
+
+namespace airdos {
+
+struct WindowMapOptions {
+  int window_frames = 12;             ///< newest frames, whose poses are free
+  int max_fixed_key_frames = 8;       ///< older frames that hold the window in place
+  int min_shared_landmarks = 15;      ///< a key frame with fewer in the window does not count
+  double key_frame_max_shared = 0.6;  ///< a frame that shares less with the last key frame is kept
+  int key_frame_interval = 5;         ///< frames: at the latest then one is kept
+  int max_key_frames = 60;            ///< in memory
+  int forget_after_frames = 200;      ///< a landmark in no kept frame that was not seen for longer
+  double min_disparity_px = 0.5;      ///< below it an observation cannot start a landmark
+  int max_eliminations =
+      2;  ///< an observation that failed in so many adjustments in a row is dropped
+};
+
+/// The memory of the optimizer: recent frames, key frames and static landmarks, in W. Knows which
+/// of them make up the next bundle adjustment and takes its result back. Bounded: see the options.
+class WindowMap {
+ public:
+  struct Observation {
+    Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();
+    bool has_right = true;
+    double sigma_px = 1;
+    int num_eliminations = 0;  ///< adjustments in a row that threw it out
+  };
+  struct Frame {
+    double time_s = 0;
+    Se3 T_W_C;
+    bool is_first = false;  ///< defines W
+    std::map<LandmarkId, Observation> observations;
+  };
+  struct Landmark {
+    std::optional<Eigen::Vector3d> p_W;  ///< nothing until a stereo observation came
+    std::set<FrameId> frames;            ///< kept frames that see it
+    FrameId last_seen;
+    std::optional<Eigen::Vector3d> published_p_W;
+    int num_dropped = 0;  ///< observations that were dropped for good
+  };
+
+  explicit WindowMap(const WindowMapOptions& options) : options_(options) {}
+
+  /// Adds the newest frame, at T_W_C as far as it is known; the oldest frame leaves the window and
+  /// becomes a key frame or is forgotten. Ids must increase. A landmark seen twice in the frame
+  /// counts once; observations of landmarks that were removed shortly before are ignored.
+  void AddFrame(const StereoCamera& camera, const FrameInput& input, const Se3& T_W_C);
+
+  /// The adjustment over the window: its frames free, the key frames that see most of it fixed, the
+  /// landmarks that at least two of these frames and one of the window see. The first frame stays
+  /// fixed while it is in the window; without any fixed frame the oldest of the window is.
+  BundleProblem BuildProblem(const StereoCamera& camera) const;
+
+  /// Takes poses, landmarks and eliminated observations back. Returns the landmarks that turned out
+  /// to be bad and are gone, sorted.
+  std::vector<LandmarkId> Absorb(const BundleProblem& problem);
+
+  /// Ids of the window's frames, oldest first.
+  const std::vector<FrameId>& window() const { return window_; }
+  const std::map<FrameId, Frame>& frames() const { return frames_; }
+  const std::map<LandmarkId, Landmark>& landmarks() const { return landmarks_; }
+  void SetPose(FrameId id, const Se3& T_W_C) { frames_.at(id).T_W_C = T_W_C; }
+  /// Notes that the landmark's position now is known outside.
+  void MarkPublished(LandmarkId id) { landmarks_.at(id).published_p_W = landmarks_.at(id).p_W; }
+
+ private:
+  void AddObservation(const StereoCamera& camera, FrameId id, const StaticObservation& feature);
+  void RetireOldest();
+  void ForgetFrame(FrameId id);
+  void ForgetLandmarks(FrameId newest);
+  int NumShared(const Frame& a, const Frame& b) const;
+  std::vector<FrameId> ChooseFixedFrames() const;
+  bool IsBad(const Landmark& landmark) const;
+
+  WindowMapOptions options_;
+  std::vector<FrameId> window_;      // oldest first
+  std::vector<FrameId> key_frames_;  // older than the window, oldest first
+  std::map<FrameId, Frame> frames_;  // of both
+  std::map<LandmarkId, Landmark> landmarks_;
+  std::map<LandmarkId, FrameId> removed_;  // bad landmarks, and when they went
+  int frames_since_key_frame_ = 0;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_OPTIMIZATION_WINDOW_WINDOW_MAP_H_
