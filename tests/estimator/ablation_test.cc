@@ -1,6 +1,6 @@
 // What people are worth to the camera, on simulated sequences: facts that are provable, and gains
 // that were measured. Seeds here are not those of the tables in the README.
-#include "processes/tools/ablation.h"
+#include "processes/tools/evaluate/ablation.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "common/simulation/settings.h"
-#include "processes/tools/ablation_report.h"
-#include "processes/tools/do_no_harm.h"
+#include "processes/tools/evaluate/ablation_report.h"
+#include "processes/tools/evaluate/do_no_harm.h"
 
 namespace airdos {
 namespace {

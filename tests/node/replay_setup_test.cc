@@ -1,4 +1,4 @@
-#include "processes/tools/replay_setup.h"
+#include "processes/tools/replay/replay_setup.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

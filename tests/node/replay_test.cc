@@ -1,4 +1,4 @@
-#include "processes/tools/replay.h"
+#include "processes/tools/replay/replay.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "processes/tools/simulated_log.h"
+#include "processes/tools/simulate/simulated_log.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@
 #include "processes/node/conversions.h"
 #include "processes/node/event_log.h"
 #include "processes/node/validate.h"
-#include "processes/tools/replay_setup.h"
+#include "processes/tools/replay/replay_setup.h"
 
 namespace airdos {
 namespace {

@@ -17,7 +17,7 @@
 #include "processes/node/channels.h"
 #include "processes/node/codec.h"
 #include "processes/node/event_log.h"
-#include "processes/tools/replay_setup.h"
+#include "processes/tools/replay/replay_setup.h"
 
 // What the map recorder and a replay do with the folder that they are given.
 

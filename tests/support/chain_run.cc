@@ -18,7 +18,7 @@
 #include "processes/node/channels.h"
 #include "processes/node/codec.h"
 #include "processes/node/event_log.h"
-#include "processes/tools/replay_setup.h"
+#include "processes/tools/replay/replay_setup.h"
 #include "tests/support/test_overrides.h"
 
 namespace airdos {

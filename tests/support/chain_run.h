@@ -7,7 +7,7 @@
 
 #include "common/evaluation/people_report.h"
 #include "common/evaluation/trajectory_report.h"
-#include "processes/tools/replay.h"
+#include "processes/tools/replay/replay.h"
 #include "tests/support/bands.h"
 
 namespace airdos {

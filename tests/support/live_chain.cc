@@ -14,7 +14,7 @@
 #include "processes/node/conversions.h"
 #include "processes/node/log_source.h"
 #include "processes/node/validate.h"
-#include "processes/tools/replay.h"
+#include "processes/tools/replay/replay.h"
 
 namespace airdos {
 namespace {

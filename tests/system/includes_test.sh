@@ -46,6 +46,9 @@ violations() {
     !in_common && to[1] == "processes" && to[2] != folder && to[2] != "node" && folder != "tools" {
       complain("processes meet only at channels")
     }
+    !in_common && folder == "tools" && to[2] == folder && to[3] != path[3] && to[3] != "progress" {
+      complain("tools do not know each other")
+    }
     folder == "node" && !in_common && to[1] == "processes" && to[2] != "node" { complain("node stands below the processes") }
     ')
 }
@@ -58,7 +61,7 @@ fail() {
 # First that the check sees what it is there for.
 fixture=$(mktemp -d)
 trap 'rm -rf "$fixture"' EXIT
-mkdir -p "$fixture"/common/{util,geometry,map,dataset,newcomer,optimization/{solver,factors,bundle,window}} "$fixture"/processes/{node,frontend,optimizer,tools}
+mkdir -p "$fixture"/common/{util,geometry,map,dataset,newcomer,optimization/{solver,factors,bundle,window}} "$fixture"/processes/{node,frontend,optimizer,tools/{map,replay}}
 bad() { printf '%s\n' "$2" > "$fixture/$1"; }
 bad common/util/a.h '#include "common/geometry/se3.h"'
 bad common/map/b.cc '#include "common/dataset/stereo_sequence.h"'
@@ -73,12 +76,13 @@ bad processes/frontend/i.cc '#include "processes/optimizer/optimizer_node.h"'
 bad processes/node/j.cc '#include "processes/frontend/frontend_node.h"'
 bad processes/optimizer/k.cc 'Subscribe(channel::kGroundTruth);'
 bad common/optimization/factors/l.h '#include "common/optimization/bundle/bundle_problem.h"'
-readonly NUM_BAD=13
+bad processes/tools/map/m.cc '#include "processes/tools/replay/replay.h"'
+readonly NUM_BAD=14
 bad common/optimization/window/ok.cc '#include "common/optimization/solver/factor_graph.h"'
 bad common/map/ok.cc '#include "common/util/ids.h"'
 bad processes/node/ok.cc '#include <lcm/lcm-cpp.hpp>'
 bad processes/node/ok2.cc '#include <chrono>'
-bad processes/tools/ok.cc '#include "processes/frontend/frontend_node.h"'
+bad processes/tools/map/ok.cc '#include "processes/frontend/frontend_node.h"'
 found=$(violations "$fixture")
 files=$(cut -d: -f1 <<< "$found" | sort -u | wc -l)
 ((files == NUM_BAD)) || fail "the check sees $files of $NUM_BAD planted mistakes: $found"

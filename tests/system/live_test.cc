@@ -17,7 +17,7 @@
 #include "processes/node/codec.h"
 #include "processes/node/event_log.h"
 #include "processes/node/log_source.h"
-#include "processes/tools/replay.h"
+#include "processes/tools/replay/replay.h"
 #include "tests/support/child_process.h"
 #include "tests/support/private_network.h"
 

@@ -8,9 +8,9 @@
 
 #include "common/util/error.h"
 #include "processes/node/types_fingerprint.h"
-#include "processes/tools/doctor_bus.h"
-#include "processes/tools/doctor_machine.h"
-#include "processes/tools/doctor_network.h"
+#include "processes/tools/doctor/doctor_bus.h"
+#include "processes/tools/doctor/doctor_machine.h"
+#include "processes/tools/doctor/doctor_network.h"
 
 namespace airdos {
 namespace {

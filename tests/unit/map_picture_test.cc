@@ -1,4 +1,4 @@
-#include "processes/tools/map_picture.h"
+#include "processes/tools/map/map_picture.h"
 
 #include <gtest/gtest.h>
 

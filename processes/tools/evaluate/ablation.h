@@ -1,0 +1,74 @@
+#ifndef AIRDOS_PROCESSES_TOOLS_EVALUATE_ABLATION_H_
+#define AIRDOS_PROCESSES_TOOLS_EVALUATE_ABLATION_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/optimization/bundle/bundle_adjuster.h"
+#include "common/optimization/window/track_noise.h"
+#include "common/simulation/feature_simulator.h"
+
+namespace airdos {
+
+/// What a row of the paper's table leaves out.
+enum class AblationRow { kBefore, kStatic, kWithoutMotion, kWithoutRigidity, kFull };
+const char* NameOf(AblationRow row);
+const std::vector<AblationRow>& AblationRows();
+
+/// Root mean squares over one sequence.
+struct AblationErrors {
+  double ate_unaligned_m = 0;  ///< positions, the first pose being the truth
+  double ate_aligned_m = 0;    ///< after SE(3) alignment
+  double rpe_m = 0;            ///< per frame
+  double rpe_deg = 0;
+  double dynamic_m = 0;  ///< of dynamic points, in the axes of the camera that sees them
+  bool has_converged = true;
+};
+
+struct AblationOptions {
+  int max_iterations = 1000;  ///< of each solve: enough to converge
+  double function_tolerance = 1e-10;
+  bool compute_covariance = false;  ///< of the newest pose
+  double rigidity_sigma_m = 0.01;
+  double stereo_rigidity_sigma_m = 0.02;  ///< where depths are as uncertain as stereo makes them
+  TrackNoiseOptions noise;                ///< how the motion of each object is weighed
+  int num_noise_passes = 2;  ///< adjustments from which the noise is learnt before the last one
+};
+
+/// Bundle adjustment over a whole simulated sequence, all rows from the same start values. The
+/// noise of each object's motion is learnt from the sequence itself; nothing here sees the truth
+/// but Evaluate().
+class Ablation {
+ public:
+  struct Solution {
+    BundleProblem problem;
+    BundleSummary summary;  ///< of the last solve
+  };
+
+  /// The sequence is not owned and outlives this.
+  Ablation(const AblationOptions& options, const SimulatedSequence& sequence);
+
+  /// The problem with start values: first frame fixed, poses from odometry, points as measured.
+  BundleProblem MakeProblem() const;
+  Solution Solve(AblationRow row) const;
+  /// The errors of a problem's values; `dynamic_m` also where they were no part of the adjustment.
+  AblationErrors Evaluate(const BundleProblem& problem) const;
+  /// Solve and evaluate.
+  AblationErrors Run(AblationRow row) const;
+
+ private:
+  BundleOptions MakeBundleOptions(AblationRow row) const;
+  /// From the odometry, and from the solution without people: the one with the lower cost.
+  BundleProblem SolveWithPriorNoise(const BundleOptions& bundle) const;
+  void LearnNoise(BundleProblem* problem) const;
+  BundleSummary SolveMotion(BundleOptions bundle, BundleProblem* problem) const;
+  BundleSummary SolveRigidity(const BundleOptions& bundle, BundleProblem* problem) const;
+
+  AblationOptions options_;
+  const SimulatedSequence& sequence_;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_TOOLS_EVALUATE_ABLATION_H_

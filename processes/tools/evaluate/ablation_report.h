@@ -1,0 +1,35 @@
+#ifndef AIRDOS_PROCESSES_TOOLS_EVALUATE_ABLATION_REPORT_H_
+#define AIRDOS_PROCESSES_TOOLS_EVALUATE_ABLATION_REPORT_H_
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "processes/tools/evaluate/ablation.h"
+
+namespace airdos {
+
+/// One setting's rows over several sequences.
+struct AblationGroup {
+  std::string setting;
+  std::uint64_t first_seed = 0;
+  std::vector<std::vector<AblationErrors>> rows;  ///< [row as in AblationRows()][sequence]
+};
+
+/// Simulates `num_sequences` of the setting, with seeds from `first_seed` on, and solves every row.
+/// `on_progress` is told the share that is done; it may be empty. Throws InputError for a setting
+/// that does not exist.
+AblationGroup RunAblation(const AblationOptions& options, const std::string& setting,
+                          std::uint64_t first_seed, int num_sequences,
+                          const std::function<void(double)>& on_progress);
+
+/// The paper's table for people to read: mean and spread over the sequences, and what the full
+/// adjustment gains over the static one.
+std::string ToTable(const AblationGroup& group);
+nlohmann::json ToJson(const AblationGroup& group);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_TOOLS_EVALUATE_ABLATION_REPORT_H_

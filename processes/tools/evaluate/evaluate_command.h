@@ -1,0 +1,25 @@
+#ifndef AIRDOS_PROCESSES_TOOLS_EVALUATE_EVALUATE_COMMAND_H_
+#define AIRDOS_PROCESSES_TOOLS_EVALUATE_EVALUATE_COMMAND_H_
+
+#include <CLI/CLI.hpp>
+
+#include "common/evaluation/trajectory.h"
+#include "processes/node/program_cli.h"
+
+namespace airdos {
+
+// The subcommands of airdos-evaluate. Each adds itself with its options and runs when it was given;
+// all throw InputError on what cannot be used.
+
+void AddTrajectoryCommand(CLI::App* app);
+void AddPeopleCommand(CLI::App* app);
+void AddCurveCommand(CLI::App* app);
+void AddSpeedCommand(CLI::App* app);
+void AddAblationCommand(CLI::App* app);
+
+/// Warnings once more, on the standard error: the table may go to a file.
+void SayWarnings(const Remarks& remarks);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_TOOLS_EVALUATE_EVALUATE_COMMAND_H_

@@ -1,0 +1,100 @@
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "common/evaluation/trajectory_plot.h"
+#include "common/evaluation/trajectory_report.h"
+#include "common/util/json_file.h"
+#include "common/util/output_files.h"
+#include "processes/tools/evaluate/evaluate_command.h"
+
+namespace airdos {
+namespace {
+
+struct TrajectoryArguments {
+  std::string estimate;
+  std::string ground_truth;
+  std::string times;
+  std::string axes = "auto";
+  std::string inverted;
+  double max_difference_s = 0.01;
+  std::size_t num_frames = 0;
+  std::string json;
+  std::string plot;
+  bool force = false;
+};
+
+void RunTrajectory(const TrajectoryArguments& arguments) {
+  const OutputFiles outputs(
+      {arguments.json, arguments.plot},
+      {{arguments.estimate, arguments.ground_truth, arguments.times}, arguments.force});
+  Trajectory estimate = ReadTrajectory(arguments.estimate);
+  Trajectory ground_truth = ReadTrajectory(arguments.ground_truth);
+  if (!arguments.times.empty()) SetTimesOfPair(arguments.times, &estimate, &ground_truth);
+  EvaluationOptions options;
+  options.max_time_difference_s = arguments.max_difference_s;
+  options.num_frames = arguments.num_frames;
+  if (arguments.axes != "auto") options.axes = GroundTruthAxes::Parse(arguments.axes);
+  options.is_estimate_inverted = arguments.inverted == "estimate";
+  options.is_truth_inverted = arguments.inverted == "ground-truth";
+  const TrajectoryReport report = EvaluateTrajectory(estimate, ground_truth, options);
+  std::fputs(ToTable(report).c_str(), stdout);
+  if (!arguments.json.empty()) {
+    nlohmann::json json = ToJson(report);
+    json["estimate"] = arguments.estimate;
+    json["ground_truth"] = arguments.ground_truth;
+    WriteJson(json, arguments.json);
+  }
+  if (!arguments.plot.empty()) {
+    WritePng(DrawEvaluation(report, arguments.estimate), arguments.plot);
+  }
+  SayWarnings(report.remarks);
+}
+
+}  // namespace
+
+void SayWarnings(const Remarks& remarks) {
+  for (const Remark& remark : remarks) {
+    if (remark.is_warning) std::fprintf(stderr, "airdos-evaluate: %s\n", ToLine(remark).c_str());
+  }
+}
+
+void AddTrajectoryCommand(CLI::App* app) {
+  const auto arguments = std::make_shared<TrajectoryArguments>();
+  CLI::App* const command = app->add_subcommand("trajectory", "Errors of a camera trajectory");
+  AddFile("--estimate", &arguments->estimate,
+          "trajectory in optical axes: TUM, KITTI, EuRoC csv or TartanAir", command)
+      ->required();
+  AddFile("--ground-truth", &arguments->ground_truth, "true trajectory, likewise", command)
+      ->required();
+  AddFile("--times", &arguments->times,
+          "times of the rows of a file without times (KITTI), one a line for each row", command);
+  command
+      ->add_option(
+          "--gt-axes", arguments->axes,
+          "axes of the ground truth: optical, ned, where right, down and forward lie (such "
+          "as y,-z,x), or auto: compares motions with the estimate's")
+      ->check([](const std::string& text) -> std::string {
+        if (text == "auto" || GroundTruthAxes::Parse(text)) return "";
+        return "'" + text + "' is none of auto, optical, ned, three axes such as y,-z,x";
+      })
+      ->capture_default_str();
+  command
+      ->add_option("--inverted", arguments->inverted,
+                   "the file whose poses are T_C_W (as ORB-SLAM's Tcw) instead of T_W_C: estimate "
+                   "or ground-truth")
+      ->check(CLI::IsMember({"estimate", "ground-truth"}));
+  command->add_option("--max-diff", arguments->max_difference_s, "largest time difference (s)")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--frames", arguments->num_frames,
+                      "images of the sequence, for the completeness (default: as many as the "
+                      "ground truth has rows, or the estimate if the truth has a higher rate)");
+  AddFile("--json", &arguments->json, "file to write all figures to", command);
+  AddFile("--plot", &arguments->plot, "PNG file to draw trajectories and errors into", command);
+  AddForce(&arguments->force, command);
+  command->callback([arguments] { RunTrajectory(*arguments); });
+}
+
+}  // namespace airdos

@@ -1,0 +1,20 @@
+// airdos-evaluate: how good an estimate is, given the truth.
+#include <CLI/CLI.hpp>
+#include <opencv2/core.hpp>
+
+#include "processes/node/program_cli.h"
+#include "processes/tools/evaluate/evaluate_command.h"
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  CLI::App app("How good an estimate is, given the truth", "airdos-evaluate");
+  app.fallthrough();
+  app.require_subcommand(1);
+  airdos::AddTrajectoryCommand(&app);
+  airdos::AddPeopleCommand(&app);
+  airdos::AddCurveCommand(&app);
+  airdos::AddSpeedCommand(&app);
+  airdos::AddAblationCommand(&app);
+  // Each command runs when it was parsed.
+  return airdos::RunProgram(argc, argv, &app, [] { return 0; });
+}

@@ -1,0 +1,115 @@
+// airdos-map: what is in a 4-D map, and its exports.
+#include <CLI/CLI.hpp>
+#include <cinttypes>
+#include <cstdio>
+#include <string>
+
+#include "common/map/four_d_map.h"
+#include "common/map/map_export.h"
+#include "common/util/output_files.h"
+#include "processes/node/program_cli.h"
+#include "processes/tools/map/map_picture.h"
+
+namespace airdos {
+namespace {
+
+FourDMap ReadAndSayWhatIsLost(const std::string& path, MapFileSummary* summary) {
+  FourDMap map = ReadFourDMap(path, summary);
+  if (!summary->drop_reason.empty()) {
+    std::fprintf(stderr, "airdos-map: %s: %" PRId64 " bytes dropped after %" PRId64 " chunks: %s\n",
+                 path.c_str(), summary->num_bytes_dropped, summary->num_chunks,
+                 summary->drop_reason.c_str());
+  } else if (!map.is_closed) {
+    std::fprintf(stderr, "airdos-map: %s: the recording was cut short\n", path.c_str());
+  }
+  return map;
+}
+
+void PrintInfo(const std::string& path) {
+  MapFileSummary summary;
+  const FourDMap map = ReadAndSayWhatIsLost(path, &summary);
+  std::size_t num_live = 0;
+  std::size_t num_refined = 0;
+  std::size_t num_truth = 0;
+  for (const auto& [id, frame] : map.frames) {
+    num_live += frame.live ? 1 : 0;
+    num_refined += frame.refined ? 1 : 0;
+    num_truth += frame.ground_truth ? 1 : 0;
+  }
+  std::set<HumanId> tracks;
+  for (const auto& [key, human] : map.humans) tracks.insert(key.second);
+  std::printf("file          version %u, %" PRId64 " chunks, %" PRId64 " bytes%s\n",
+              kMapFileVersion, summary.num_chunks, summary.num_bytes_used,
+              map.is_closed ? ", closed" : "");
+  std::printf("session       %" PRId64 ", recorded by %s\n", map.session, map.program.c_str());
+  if (map.camera) {
+    std::printf("camera        %d x %d px, f %.3f px, baseline %.4f m\n", map.camera->width,
+                map.camera->height, map.camera->fx_px, map.camera->baseline_m);
+  }
+  std::printf("frames        %zu", map.frames.size());
+  if (!map.frames.empty()) {
+    std::printf(" (%" PRId64 " to %" PRId64 ")", map.frames.begin()->first.value,
+                map.frames.rbegin()->first.value);
+  }
+  std::printf(": %zu live, %zu refined, %zu ground truth\n", num_live, num_refined, num_truth);
+  std::printf("landmarks     %zu\n", map.landmarks.size());
+  std::printf("people        %zu tracks, %zu states\n", tracks.size(), map.humans.size());
+}
+
+void Export(const std::string& path, const std::string& folder, bool force) {
+  MapFileSummary summary;
+  int num_replaced = 0;
+  for (const std::string& file :
+       ExportMap(ReadAndSayWhatIsLost(path, &summary), path, folder, force, &num_replaced)) {
+    std::printf("%s\n", file.c_str());
+  }
+  const std::string what = SayReplaced(num_replaced);
+  if (!what.empty()) std::fprintf(stderr, "airdos-map: %s: %s\n", folder.c_str(), what.c_str());
+}
+
+void Plot(const std::string& path, const std::string& picture, bool force) {
+  const OutputFiles outputs({picture}, {{path}, force});
+  MapFileSummary summary;
+  WriteMapPicture(ReadAndSayWhatIsLost(path, &summary), picture);
+  std::printf("%s\n", picture.c_str());
+}
+
+struct Arguments {
+  std::string input;
+  std::string out;
+  bool force = false;
+};
+
+CLI::App* AddCommand(const std::string& name, const std::string& text, Arguments* arguments,
+                     CLI::App* app) {
+  CLI::App* const command = app->add_subcommand(name, text);
+  AddFile("INPUT", &arguments->input, "map.airdos", command)->required();
+  return command;
+}
+
+int Run(int argc, char** argv) {
+  CLI::App app("What is in a 4-D map, and its exports", "airdos-map");
+  app.require_subcommand(1);
+  app.fallthrough();
+  Arguments arguments;
+  AddCommand("info", "Print what a map holds", &arguments, &app);
+  CLI::App* const export_command =
+      AddCommand("export", "Write trajectories, PLY and people of a map", &arguments, &app);
+  AddFolder("--out", &arguments.out, "folder to write to", export_command)->required();
+  AddForce(&arguments.force, export_command);
+  CLI::App* const plot_command =
+      AddCommand("plot", "Draw a map from above: camera, people, static points", &arguments, &app);
+  AddFile("--out", &arguments.out, "PNG to write", plot_command)->required();
+  AddForce(&arguments.force, plot_command);
+  return RunProgram(argc, argv, &app, [&] {
+    if (app.got_subcommand("info")) PrintInfo(arguments.input);
+    if (export_command->parsed()) Export(arguments.input, arguments.out, arguments.force);
+    if (plot_command->parsed()) Plot(arguments.input, arguments.out, arguments.force);
+    return 0;
+  });
+}
+
+}  // namespace
+}  // namespace airdos
+
+int main(int argc, char** argv) { return airdos::Run(argc, argv); }

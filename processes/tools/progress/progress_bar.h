@@ -1,0 +1,19 @@
+#ifndef AIRDOS_PROCESSES_TOOLS_PROGRESS_PROGRESS_BAR_H_
+#define AIRDOS_PROCESSES_TOOLS_PROGRESS_PROGRESS_BAR_H_
+
+namespace airdos {
+
+/// Says on stderr how far a run is: a bar on a terminal, else one line every ten per cent.
+class ProgressBar {
+ public:
+  ProgressBar();
+  void Show(double fraction_done);
+
+ private:
+  bool is_terminal_;
+  int last_percent_ = 0;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_TOOLS_PROGRESS_PROGRESS_BAR_H_

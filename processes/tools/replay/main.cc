@@ -1,0 +1,112 @@
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <opencv2/core/utility.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "processes/node/input_check.h"
+#include "processes/node/looped_source.h"
+#include "processes/node/process_cli.h"
+#include "processes/tools/progress/progress_bar.h"
+#include "processes/tools/replay/replay.h"
+#include "processes/tools/replay/replay_setup.h"
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Runs all processes in one, as fast as the machine allows, on a log or data set. Writes only "
+      "what --out, --run-dir and --timing name.",
+      "airdos-replay");
+  airdos::ReplaySetup setup;
+  airdos::ReplayOptions options;
+  std::string config_path;
+  std::string timing_path;
+  std::int64_t first = std::numeric_limits<std::int64_t>::min();
+  std::int64_t last = std::numeric_limits<std::int64_t>::max();
+  std::string threads = "auto";
+  int num_loops = 1;
+  bool no_progress = false;
+  bool digest = false;
+  bool digest_only = false;
+  setup.config_dir = airdos::ConfigFolder();
+  const airdos::InputOptions input(&app);
+  airdos::InputCheckOptions check;
+  airdos::AddInputCheckOptions(&app, &check);
+  airdos::AddFile("--out", &options.out_path, "log of what the processes publish", &app);
+  app.add_flag("--all", options.writes_inputs, "have the inputs in that log as well");
+  airdos::AddFolder("--run-dir", &setup.run_dir,
+                    "folder for map, trajectories, configurations; without it no map is recorded",
+                    &app);
+  airdos::AddFile("--config", &config_path,
+                  "folder with <process>.yaml, or one of these files [" + setup.config_dir + "]",
+                  &app);
+  airdos::AddFolder("--config-dir", &config_path, "older name of --config", &app)->group("");
+  app.add_option("--set", setup.overrides,
+                 "process:section.key=value (again for more); the process may be left out where "
+                 "one alone has the key")
+      ->allow_extra_args(false);
+  app.add_option("--people", setup.people, "what people are used for")
+      ->check(airdos::OneOf({"off", "mask_only", "on"}));
+  app.add_option("--masks", setup.masks, "whether pixels on people are left out")
+      ->check(airdos::OneOf({"off", "on"}));
+  app.add_option("--first", first, "first image number");
+  app.add_option("--last", last, "last image number");
+  app.add_option("--loop", num_loops, "how often to play it, as one long session")
+      ->check(CLI::Range(1, 1000000));
+  app.add_flag("--from-features", setup.from_features,
+               "run only the optimizer and the map recorder, on the features and people that the "
+               "log holds (airdos-simulate)");
+  app.add_option("--threads", threads,
+                 "1: all in one; auto: one for each process, if there are cores")
+      ->check(airdos::OneOf({"1", "auto"}))
+      ->capture_default_str();
+  airdos::AddFile("--timing", &timing_path, "JSON file for ms per frame of each process", &app);
+  airdos::AddForce(&setup.rules.force, &app);
+  app.add_flag("--no-progress", no_progress, "do not say how far it is");
+  app.add_flag("--digest", digest, "print the digests of the output channels only");
+  app.add_flag("--digest-only", digest_only, "print them of the log as it is; run nothing");
+
+  return airdos::RunProgram(argc, argv, &app, [&] {
+    if (digest_only) {
+      std::cout << airdos::FormatDigests(airdos::DigestLog(input.path()));
+      return 0;
+    }
+    cv::setNumThreads(1);
+    const auto inputs =
+        setup.from_features ? airdos::LogInputs::kFeatures : airdos::LogInputs::kImages;
+    const auto say = [](const std::string& line) {
+      std::cerr << "airdos-replay: " << line << std::endl;
+    };
+    const auto open = [&] {
+      return airdos::OpenFrameSource(input.path(), first, last, inputs, check.calibration);
+    };
+    airdos::LoopedSource source(open, num_loops);
+    // Said once everything else is known to be right.
+    std::vector<std::string> remarks;
+    for (const std::string& note : source.TakeNotes()) remarks.push_back("note: " + note);
+    if (!check.is_off && !setup.from_features) {
+      airdos::CheckBeforeRun(input.path(), check.calibration,
+                             [&](const std::string& line) { remarks.push_back(line); });
+    }
+    if (!config_path.empty()) airdos::SetConfig(config_path, &setup);
+    setup.rules.inputs = {input.path()};
+    setup.outputs = {options.out_path, timing_path};
+    const airdos::ReplayNodes replay = airdos::PrepareReplay(setup);
+    for (const std::string& remark : remarks) say(remark);
+    options.is_parallel = threads == "auto" && std::thread::hardware_concurrency() > 1;
+    airdos::ProgressBar bar;
+    if (!no_progress) options.on_progress = [&bar](double fraction) { bar.Show(fraction); };
+    const airdos::ReplayResult result = airdos::Replay(&source, replay.nodes, options);
+    if (!timing_path.empty()) airdos::WriteTiming(result, timing_path);
+    std::cout << (digest ? airdos::FormatDigests(result.digests) : airdos::FormatSummary(result));
+    if (digest) {  // which must not hide that something was rejected
+      for (const std::string& remark : result.remarks) std::cerr << "note: " << remark << "\n";
+    }
+    const std::string why_in_vain = airdos::WhyInVain(result.tally);
+    if (!why_in_vain.empty()) say(why_in_vain);
+    return why_in_vain.empty() ? 0 : 1;
+  });
+}

@@ -1,0 +1,37 @@
+// airdos-simulate: a log of what the frontend and the human tracker would say of a simulated world.
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <iostream>
+#include <string>
+
+#include "common/simulation/settings.h"
+#include "common/util/output_files.h"
+#include "processes/node/program_cli.h"
+#include "processes/tools/simulate/simulated_log.h"
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Simulates features and people, without images, and writes them as an LCM log that "
+      "airdos-replay --from-features runs the optimizer on.",
+      "airdos-simulate");
+  std::string setting = "walkers8";
+  std::uint64_t seed = 1;
+  std::string out;
+  bool force = false;
+  app.add_option("--setting", setting, "what is simulated")
+      ->check(airdos::OneOf(airdos::SettingNames()))
+      ->capture_default_str();
+  app.add_option("--seed", seed, "of the random numbers")->capture_default_str();
+  airdos::AddFile("--out", &out, "log to write", &app)->required();
+  airdos::AddForce(&force, &app);
+
+  return airdos::RunProgram(argc, argv, &app, [&] {
+    const airdos::OutputFiles outputs({out}, {{}, force});
+    const airdos::SimulatedSequence sequence =
+        airdos::Simulate(airdos::SettingByName(setting, seed));
+    airdos::WriteSimulatedLog(sequence, out);
+    std::cout << out << ": " << sequence.frames.size() << " frames, " << sequence.objects.size()
+              << " objects\n";
+    return 0;
+  });
+}
