@@ -5,8 +5,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/human/body_mask.h"
-#include "processes/node/image_codec.h"
-#include "processes/node/keypoint_messages.h"
+#include "processes/node/message/image_codec.h"
+#include "processes/node/message/keypoint_messages.h"
 
 namespace airdos {
 namespace {

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "processes/node/channels.h"
-#include "processes/node/image_codec.h"
-#include "processes/node/keypoint_messages.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/image_codec.h"
+#include "processes/node/message/keypoint_messages.h"
 
 namespace airdos {
 namespace {

@@ -1,5 +1,5 @@
 #include "processes/human_tracker/human_tracker_node.h"
-#include "processes/node/process_main.h"
+#include "processes/node/live/process_main.h"
 
 int main(int argc, char** argv) {
   airdos::ProcessInfo info;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/map/four_d_map.h"
-#include "processes/node/header.h"
+#include "processes/node/message/header.h"
 
 namespace airdos {
 

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "processes/map_recorder/map_recorder_node.h"
-#include "processes/node/process_main.h"
+#include "processes/node/live/process_main.h"
 
 int main(int argc, char** argv) {
   airdos::ProcessInfo info;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "processes/node/header.h"
+#include "processes/node/message/header.h"
 
 namespace airdos {
 

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "common/geometry/stereo_camera.h"
-#include "processes/node/channels.h"
-#include "processes/node/conversions.h"
 #include "processes/node/frame_joiner.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/conversions.h"
 #include "processes/node/node.h"
 #include "processes/node/stray_watch.h"
 

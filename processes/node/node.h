@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "processes/node/codec.h"
-#include "processes/node/header.h"
-#include "processes/node/validate.h"
+#include "processes/node/message/codec.h"
+#include "processes/node/message/header.h"
+#include "processes/node/message/validate.h"
 
 namespace airdos {
 

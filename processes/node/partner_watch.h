@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "processes/node/header.h"
+#include "processes/node/message/header.h"
 #include "processes/node/stray_watch.h"
 
 namespace airdos {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "processes/node/channels.h"
-#include "processes/node/codec.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/codec.h"
 
 namespace airdos {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "processes/node/header.h"
+#include "processes/node/message/header.h"
 
 namespace airdos {
 

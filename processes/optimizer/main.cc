@@ -1,4 +1,4 @@
-#include "processes/node/process_main.h"
+#include "processes/node/live/process_main.h"
 #include "processes/optimizer/optimizer_node.h"
 
 int main(int argc, char** argv) {

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "common/human/skeleton.h"
-#include "processes/node/conversions.h"
+#include "processes/node/message/conversions.h"
 
 namespace airdos {
 namespace {

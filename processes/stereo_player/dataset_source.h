@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/dataset/stereo_sequence.h"
-#include "processes/node/log_source.h"
+#include "processes/node/log/log_source.h"
 #include "processes/stereo_player/stereo_player.h"
 
 namespace airdos {

@@ -5,11 +5,11 @@
 
 #include "common/util/output_files.h"
 #include "common/util/version.h"
-#include "processes/node/input_check.h"
-#include "processes/node/lcm_transport.h"
-#include "processes/node/log_source.h"
-#include "processes/node/process_cli.h"
-#include "processes/node/process_usage.h"
+#include "processes/node/check/input_check.h"
+#include "processes/node/live/lcm_transport.h"
+#include "processes/node/live/process_cli.h"
+#include "processes/node/live/process_usage.h"
+#include "processes/node/log/log_source.h"
 #include "processes/stereo_player/player_loop.h"
 #include "processes/stereo_player/player_options.h"
 

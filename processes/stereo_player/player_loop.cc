@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "common/util/error.h"
-#include "processes/node/channels.h"
-#include "processes/node/event_log.h"
-#include "processes/node/looped_source.h"
-#include "processes/node/process_usage.h"
+#include "processes/node/live/process_usage.h"
+#include "processes/node/log/event_log.h"
+#include "processes/node/log/looped_source.h"
+#include "processes/node/message/channels.h"
 #include "processes/stereo_player/dataset_source.h"
 
 namespace airdos {

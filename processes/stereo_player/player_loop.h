@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
-#include "processes/node/lcm_transport.h"
-#include "processes/node/log_source.h"
+#include "processes/node/live/lcm_transport.h"
+#include "processes/node/log/log_source.h"
 #include "processes/stereo_player/lockstep_gate.h"
 #include "processes/stereo_player/player_options.h"
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "processes/node/input_check.h"
-#include "processes/node/process_cli.h"
+#include "processes/node/check/input_check.h"
+#include "processes/node/live/process_cli.h"
 #include "processes/stereo_player/image_packer.h"
 #include "processes/stereo_player/lockstep_gate.h"
 

@@ -8,9 +8,9 @@
 #include "airdos/pose_t.hpp"
 #include "airdos/stereo_calibration_t.hpp"
 #include "common/util/error.h"
-#include "processes/node/channels.h"
-#include "processes/node/conversions.h"
-#include "processes/node/keypoint_messages.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/conversions.h"
+#include "processes/node/message/keypoint_messages.h"
 
 namespace airdos {
 namespace {

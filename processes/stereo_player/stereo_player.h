@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/dataset/stereo_sequence.h"
-#include "processes/node/header.h"
+#include "processes/node/message/header.h"
 #include "processes/node/node.h"
 #include "processes/stereo_player/image_packer.h"
 

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <string>
 
-#include "processes/node/codec.h"
+#include "processes/node/message/codec.h"
 #include "tests/fuzz/fuzz_targets.h"
 
 namespace airdos {

@@ -6,7 +6,7 @@
 #include "processes/frontend/frontend_node.h"
 #include "processes/human_tracker/human_tracker_node.h"
 #include "processes/map_recorder/map_recorder_node.h"
-#include "processes/node/channels.h"
+#include "processes/node/message/channels.h"
 #include "processes/optimizer/optimizer_node.h"
 #include "tests/fuzz/fuzz_input.h"
 #include "tests/support/sample_messages.h"

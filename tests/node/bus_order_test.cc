@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "processes/node/fifo_bus.h"
-#include "processes/node/parallel_bus.h"
+#include "processes/node/bus/fifo_bus.h"
+#include "processes/node/bus/parallel_bus.h"
 #include "tests/node/fake_nodes.h"
 
 namespace airdos {

@@ -1,4 +1,4 @@
-#include "processes/node/codec.h"
+#include "processes/node/message/codec.h"
 
 #include <gtest/gtest.h>
 

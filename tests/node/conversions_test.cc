@@ -1,5 +1,5 @@
 // Every field that passes between messages and the types of common/, all values different.
-#include "processes/node/conversions.h"
+#include "processes/node/message/conversions.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "processes/node/keypoint_messages.h"
+#include "processes/node/message/keypoint_messages.h"
 
 namespace airdos {
 namespace {

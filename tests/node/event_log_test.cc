@@ -1,4 +1,4 @@
-#include "processes/node/event_log.h"
+#include "processes/node/log/event_log.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -11,7 +11,7 @@
 #include <random>
 
 #include "common/util/error.h"
-#include "processes/node/log_source.h"
+#include "processes/node/log/log_source.h"
 
 namespace airdos {
 namespace {

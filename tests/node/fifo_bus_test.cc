@@ -1,4 +1,4 @@
-#include "processes/node/fifo_bus.h"
+#include "processes/node/bus/fifo_bus.h"
 
 #include <gtest/gtest.h>
 

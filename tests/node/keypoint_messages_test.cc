@@ -1,4 +1,4 @@
-#include "processes/node/keypoint_messages.h"
+#include "processes/node/message/keypoint_messages.h"
 
 #include <gtest/gtest.h>
 

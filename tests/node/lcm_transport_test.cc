@@ -1,4 +1,4 @@
-#include "processes/node/lcm_transport.h"
+#include "processes/node/live/lcm_transport.h"
 
 #include <gtest/gtest.h>
 

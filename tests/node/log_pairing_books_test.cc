@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "processes/node/channels.h"
-#include "processes/node/log_channels.h"
-#include "processes/node/log_pairing.h"
+#include "processes/node/log/log_channels.h"
+#include "processes/node/log/log_pairing.h"
+#include "processes/node/message/channels.h"
 
 namespace airdos {
 namespace {

@@ -1,4 +1,4 @@
-#include "processes/node/log_recorder.h"
+#include "processes/node/live/log_recorder.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/util/error.h"
-#include "processes/node/channels.h"
+#include "processes/node/message/channels.h"
 #include "tests/node/fake_nodes.h"
 
 namespace airdos {

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "common/util/error.h"
-#include "processes/node/channels.h"
-#include "processes/node/foreign_file.h"
-#include "processes/node/log_source.h"
-#include "processes/node/looped_source.h"
+#include "processes/node/log/foreign_file.h"
+#include "processes/node/log/log_source.h"
+#include "processes/node/log/looped_source.h"
+#include "processes/node/message/channels.h"
 #include "tests/node/fake_nodes.h"
 
 namespace airdos {

@@ -1,4 +1,4 @@
-#include "processes/node/looped_source.h"
+#include "processes/node/log/looped_source.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include "common/util/error.h"
 #include "processes/map_recorder/map_recorder_node.h"
-#include "processes/node/log_source.h"
+#include "processes/node/log/log_source.h"
 
 namespace airdos {
 namespace {

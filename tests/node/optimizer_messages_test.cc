@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "processes/node/validate.h"
+#include "processes/node/message/validate.h"
 
 namespace airdos {
 namespace {

@@ -1,4 +1,4 @@
-#include "processes/node/parallel_bus.h"
+#include "processes/node/bus/parallel_bus.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "common/util/error.h"
-#include "processes/node/fifo_bus.h"
+#include "processes/node/bus/fifo_bus.h"
 #include "tests/node/fake_nodes.h"
 
 namespace airdos {

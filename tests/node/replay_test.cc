@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "common/util/error.h"
-#include "processes/node/channels.h"
-#include "processes/node/event_log.h"
+#include "processes/node/log/event_log.h"
+#include "processes/node/message/channels.h"
 #include "tests/node/fake_nodes.h"
 
 namespace airdos {

@@ -7,8 +7,8 @@
 
 #include "airdos/state_estimate_t.hpp"
 #include "airdos/static_features_t.hpp"
-#include "processes/node/channels.h"
-#include "processes/node/codec.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/codec.h"
 
 namespace airdos {
 namespace {

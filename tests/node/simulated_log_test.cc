@@ -14,11 +14,11 @@
 #include "airdos/state_estimate_t.hpp"
 #include "airdos/static_features_t.hpp"
 #include "common/simulation/settings.h"
-#include "processes/node/channels.h"
-#include "processes/node/codec.h"
-#include "processes/node/conversions.h"
-#include "processes/node/event_log.h"
-#include "processes/node/validate.h"
+#include "processes/node/log/event_log.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/codec.h"
+#include "processes/node/message/conversions.h"
+#include "processes/node/message/validate.h"
 #include "processes/tools/replay/replay_setup.h"
 
 namespace airdos {

@@ -11,7 +11,7 @@
 #include "airdos/pose_t.hpp"
 #include "airdos/stereo_calibration_t.hpp"
 #include "common/util/error.h"
-#include "processes/node/channels.h"
+#include "processes/node/message/channels.h"
 
 namespace airdos {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "processes/node/own_output.h"
+#include "processes/node/live/own_output.h"
 #include "processes/node/partner_watch.h"
 #include "processes/node/stray_watch.h"
 

@@ -12,7 +12,7 @@
 #include "common/map/map_export.h"
 #include "processes/frontend/input_watch.h"
 #include "processes/human_tracker/people_watch.h"
-#include "processes/node/own_output.h"
+#include "processes/node/live/own_output.h"
 #include "processes/node/partner_watch.h"
 #include "processes/node/stray_watch.h"
 #include "processes/optimizer/landmark_archive.h"

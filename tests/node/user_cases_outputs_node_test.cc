@@ -14,9 +14,9 @@
 #include "common/map/four_d_map.h"
 #include "common/util/error.h"
 #include "processes/map_recorder/map_recorder_node.h"
-#include "processes/node/channels.h"
-#include "processes/node/codec.h"
-#include "processes/node/event_log.h"
+#include "processes/node/log/event_log.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/codec.h"
 #include "processes/tools/replay/replay_setup.h"
 
 // What the map recorder and a replay do with the folder that they are given.

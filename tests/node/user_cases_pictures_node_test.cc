@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/util/error.h"
-#include "processes/node/image_codec.h"
+#include "processes/node/message/image_codec.h"
 #include "processes/stereo_player/image_packer.h"
 
 namespace airdos {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "processes/node/validate.h"
+#include "processes/node/message/validate.h"
 #include "tests/support/sample_messages.h"
 
 namespace airdos {

@@ -1,4 +1,4 @@
-#include "processes/node/validate.h"
+#include "processes/node/message/validate.h"
 
 #include <gtest/gtest.h>
 

@@ -15,9 +15,9 @@
 #include "airdos/state_estimate_t.hpp"
 #include "common/evaluation/people_matching.h"
 #include "common/map/four_d_map.h"
-#include "processes/node/channels.h"
-#include "processes/node/codec.h"
-#include "processes/node/event_log.h"
+#include "processes/node/log/event_log.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/codec.h"
 #include "processes/tools/replay/replay_setup.h"
 #include "tests/support/test_overrides.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "processes/node/channels.h"
+#include "processes/node/message/channels.h"
 #include "tests/support/live_chain.h"
 #include "tests/support/private_network.h"
 

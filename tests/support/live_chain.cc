@@ -9,11 +9,11 @@
 #include "airdos/frame_done_t.hpp"
 #include "airdos/human_observations_t.hpp"
 #include "airdos/pose_t.hpp"
-#include "processes/node/channels.h"
-#include "processes/node/codec.h"
-#include "processes/node/conversions.h"
-#include "processes/node/log_source.h"
-#include "processes/node/validate.h"
+#include "processes/node/log/log_source.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/codec.h"
+#include "processes/node/message/conversions.h"
+#include "processes/node/message/validate.h"
 #include "processes/tools/replay/replay.h"
 
 namespace airdos {

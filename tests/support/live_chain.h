@@ -13,9 +13,9 @@
 #include "airdos/process_status_t.hpp"
 #include "airdos/state_estimate_t.hpp"
 #include "common/geometry/se3.h"
-#include "processes/node/channel_digests.h"
-#include "processes/node/event_log.h"
-#include "processes/node/lcm_transport.h"
+#include "processes/node/live/lcm_transport.h"
+#include "processes/node/log/channel_digests.h"
+#include "processes/node/log/event_log.h"
 #include "tests/support/child_process.h"
 
 namespace airdos {

@@ -1,7 +1,7 @@
 #ifndef AIRDOS_TESTS_SUPPORT_SAMPLE_MESSAGES_H_
 #define AIRDOS_TESTS_SUPPORT_SAMPLE_MESSAGES_H_
 
-#include "processes/node/validate.h"
+#include "processes/node/message/validate.h"
 
 namespace airdos {
 

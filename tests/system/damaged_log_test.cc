@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "processes/node/channels.h"
-#include "processes/node/codec.h"
-#include "processes/node/event_log.h"
-#include "processes/node/header.h"
+#include "processes/node/log/event_log.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/codec.h"
+#include "processes/node/message/header.h"
 #include "tests/support/child_process.h"
 #include "tests/support/private_network.h"
 #include "tests/support/sample_messages.h"

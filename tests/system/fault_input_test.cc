@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "airdos/stereo_calibration_t.hpp"
-#include "processes/node/codec.h"
+#include "processes/node/message/codec.h"
 #include "tests/support/fault_fixture.h"
 
 // What the chain makes of bad input: the sample log, spoiled, played into the real processes. Each

@@ -11,7 +11,7 @@
 #include <random>
 
 #include "common/map/four_d_map.h"
-#include "processes/node/channels.h"
+#include "processes/node/message/channels.h"
 #include "tests/support/fault_fixture.h"
 
 // What happens to a run when processes are killed, the disk is full, the machine is too slow or the

@@ -14,6 +14,8 @@ violations() {
       rank["features"] = rank["map"] = rank["dataset"] = rank["simulation"] = 4
       rank["evaluation"] = rank["perception"] = 4
       rank["optimization"] = rank["check"] = 5
+      node_room["node"] = 1; node_room["message"] = 0; node_room["log"] = 2  # of processes/node; itself is the room "node"
+      node_room["bus"] = node_room["check"] = node_room["live"] = 3
       room["solver"] = 0; room["factors"] = 1; room["bundle"] = 2; room["window"] = 3  # of common/optimization
       clock = "<(thread|chrono|mutex|shared_mutex|condition_variable|future|ctime|time.h|sys/time.h|pthread.h)>"
     }
@@ -49,6 +51,11 @@ violations() {
     !in_common && folder == "tools" && to[2] == folder && to[3] != path[3] && to[3] != "progress" {
       complain("tools do not know each other")
     }
+    folder == "node" && !in_common && to[1] == "processes" && to[2] == folder {
+      here = path[4] == "" ? folder : path[3]
+      there = to[4] == "" ? folder : to[3]
+      if (here != there && !(node_room[there] < node_room[here])) complain("the room " here " stands below " there " or beside it")
+    }
     folder == "node" && !in_common && to[1] == "processes" && to[2] != "node" { complain("node stands below the processes") }
     ')
 }
@@ -61,7 +68,7 @@ fail() {
 # First that the check sees what it is there for.
 fixture=$(mktemp -d)
 trap 'rm -rf "$fixture"' EXIT
-mkdir -p "$fixture"/common/{util,geometry,map,dataset,newcomer,optimization/{solver,factors,bundle,window}} "$fixture"/processes/{node,frontend,optimizer,tools/{map,replay}}
+mkdir -p "$fixture"/common/{util,geometry,map,dataset,newcomer,optimization/{solver,factors,bundle,window}} "$fixture"/processes/{node/{bus,log,message},frontend,optimizer,tools/{map,replay}}
 bad() { printf '%s\n' "$2" > "$fixture/$1"; }
 bad common/util/a.h '#include "common/geometry/se3.h"'
 bad common/map/b.cc '#include "common/dataset/stereo_sequence.h"'
@@ -77,7 +84,10 @@ bad processes/node/j.cc '#include "processes/frontend/frontend_node.h"'
 bad processes/optimizer/k.cc 'Subscribe(channel::kGroundTruth);'
 bad common/optimization/factors/l.h '#include "common/optimization/bundle/bundle_problem.h"'
 bad processes/tools/map/m.cc '#include "processes/tools/replay/replay.h"'
-readonly NUM_BAD=14
+bad processes/node/log/n.cc '#include "processes/node/bus/bus.h"'
+bad processes/node/message/o.cc '#include "processes/node/node.h"'
+readonly NUM_BAD=16
+bad processes/node/bus/ok.cc '#include "processes/node/node.h"'
 bad common/optimization/window/ok.cc '#include "common/optimization/solver/factor_graph.h"'
 bad common/map/ok.cc '#include "common/util/ids.h"'
 bad processes/node/ok.cc '#include <lcm/lcm-cpp.hpp>'

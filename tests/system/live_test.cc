@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "airdos/frame_done_t.hpp"
-#include "processes/node/channels.h"
-#include "processes/node/codec.h"
-#include "processes/node/event_log.h"
-#include "processes/node/log_source.h"
+#include "processes/node/log/event_log.h"
+#include "processes/node/log/log_source.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/codec.h"
 #include "processes/tools/replay/replay.h"
 #include "tests/support/child_process.h"
 #include "tests/support/private_network.h"

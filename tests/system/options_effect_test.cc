@@ -25,11 +25,11 @@
 #include "common/util/error.h"
 #include "processes/frontend/frontend_node.h"
 #include "processes/human_tracker/human_tracker_node.h"
-#include "processes/node/channel_digests.h"
-#include "processes/node/channels.h"
-#include "processes/node/codec.h"
-#include "processes/node/fifo_bus.h"
-#include "processes/node/log_source.h"
+#include "processes/node/bus/fifo_bus.h"
+#include "processes/node/log/channel_digests.h"
+#include "processes/node/log/log_source.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/codec.h"
 #include "processes/optimizer/optimizer_node.h"
 
 namespace airdos {

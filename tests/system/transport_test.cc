@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "airdos/frame_done_t.hpp"
-#include "processes/node/lcm_runner.h"
-#include "processes/node/lcm_transport.h"
+#include "processes/node/live/lcm_runner.h"
+#include "processes/node/live/lcm_transport.h"
 #include "processes/node/node.h"
 #include "tests/support/child_process.h"
 #include "tests/support/private_network.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "processes/node/channels.h"
+#include "processes/node/message/channels.h"
 #include "tests/support/live_chain.h"
 
 // The processes spread over two hosts: player and frontend on A, human tracker, optimizer and

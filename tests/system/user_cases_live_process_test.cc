@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "processes/node/codec.h"
+#include "processes/node/message/codec.h"
 #include "tests/support/fault_fixture.h"
 
 // What users' own drivers and second plays of a log do to the real processes.

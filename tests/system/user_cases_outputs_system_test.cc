@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "common/map/four_d_map.h"
-#include "processes/node/event_log.h"
+#include "processes/node/log/event_log.h"
 #include "tests/support/child_process.h"
 
 // What the programs do to files that are not theirs to write, with the programs themselves.

@@ -1,4 +1,4 @@
-#include "processes/node/check_log.h"
+#include "processes/node/check/check_log.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -12,9 +12,9 @@
 #include "airdos/stereo_calibration_t.hpp"
 #include "common/check/check_jpeg.h"
 #include "common/util/error.h"
-#include "processes/node/channels.h"
-#include "processes/node/codec.h"
-#include "processes/node/event_log.h"
+#include "processes/node/log/event_log.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/codec.h"
 #include "processes/stereo_player/dataset_source.h"
 #include "tests/support/small_sequence.h"
 

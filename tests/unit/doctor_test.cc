@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "common/util/error.h"
-#include "processes/node/types_fingerprint.h"
+#include "processes/node/message/types_fingerprint.h"
 #include "processes/tools/doctor/doctor_bus.h"
 #include "processes/tools/doctor/doctor_machine.h"
 #include "processes/tools/doctor/doctor_network.h"

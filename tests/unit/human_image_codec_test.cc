@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "processes/node/image_codec.h"
+#include "processes/node/message/image_codec.h"
 
 namespace airdos {
 namespace {

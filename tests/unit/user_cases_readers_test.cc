@@ -18,8 +18,8 @@
 #include "common/dataset/image_rows.h"
 #include "common/dataset/stereo_sequence.h"
 #include "common/util/error.h"
-#include "processes/node/channels.h"
-#include "processes/node/keypoint_messages.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/keypoint_messages.h"
 #include "processes/stereo_player/dataset_source.h"
 #include "processes/stereo_player/stereo_player.h"
 

@@ -6,8 +6,8 @@
 #include "common/util/error.h"
 #include "common/util/json_file.h"
 #include "common/util/output_files.h"
-#include "processes/node/input_check.h"
-#include "processes/node/program_cli.h"
+#include "processes/node/check/input_check.h"
+#include "processes/node/live/program_cli.h"
 
 int main(int argc, char** argv) {
   CLI::App app(

@@ -5,11 +5,11 @@
 #include <cstring>
 #include <vector>
 
-#include "processes/node/channels.h"
-#include "processes/node/codec.h"
-#include "processes/node/lcm_transport.h"
-#include "processes/node/process_usage.h"
-#include "processes/node/validate.h"
+#include "processes/node/live/lcm_transport.h"
+#include "processes/node/live/process_usage.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/codec.h"
+#include "processes/node/message/validate.h"
 
 namespace airdos {
 namespace {

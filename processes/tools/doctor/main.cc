@@ -7,9 +7,9 @@
 #include "common/util/json_file.h"
 #include "common/util/output_files.h"
 #include "common/util/version.h"
-#include "processes/node/lcm_transport.h"
-#include "processes/node/program_cli.h"
-#include "processes/node/types_fingerprint.h"
+#include "processes/node/live/lcm_transport.h"
+#include "processes/node/live/program_cli.h"
+#include "processes/node/message/types_fingerprint.h"
 #include "processes/tools/doctor/doctor_bus.h"
 #include "processes/tools/doctor/doctor_machine.h"
 

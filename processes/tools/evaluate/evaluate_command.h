@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/evaluation/trajectory.h"
-#include "processes/node/program_cli.h"
+#include "processes/node/live/program_cli.h"
 
 namespace airdos {
 

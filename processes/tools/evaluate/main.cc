@@ -2,7 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <opencv2/core.hpp>
 
-#include "processes/node/program_cli.h"
+#include "processes/node/live/program_cli.h"
 #include "processes/tools/evaluate/evaluate_command.h"
 
 int main(int argc, char** argv) {

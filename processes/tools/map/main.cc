@@ -7,7 +7,7 @@
 #include "common/map/four_d_map.h"
 #include "common/map/map_export.h"
 #include "common/util/output_files.h"
-#include "processes/node/program_cli.h"
+#include "processes/node/live/program_cli.h"
 #include "processes/tools/map/map_picture.h"
 
 namespace airdos {

@@ -2,9 +2,9 @@
 #include <iostream>
 
 #include "common/util/output_files.h"
-#include "processes/node/lcm_transport.h"
-#include "processes/node/log_recorder.h"
-#include "processes/node/program_cli.h"
+#include "processes/node/live/lcm_transport.h"
+#include "processes/node/live/log_recorder.h"
+#include "processes/node/live/program_cli.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Records what is said on LCM into an event log, without losing anything.",

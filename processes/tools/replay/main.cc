@@ -8,9 +8,9 @@
 #include <thread>
 #include <vector>
 
-#include "processes/node/input_check.h"
-#include "processes/node/looped_source.h"
-#include "processes/node/process_cli.h"
+#include "processes/node/check/input_check.h"
+#include "processes/node/live/process_cli.h"
+#include "processes/node/log/looped_source.h"
 #include "processes/tools/progress/progress_bar.h"
 #include "processes/tools/replay/replay.h"
 #include "processes/tools/replay/replay_setup.h"

@@ -16,10 +16,10 @@
 #include "common/util/error.h"
 #include "common/util/json_file.h"
 #include "common/util/output_files.h"
-#include "processes/node/channels.h"
-#include "processes/node/codec.h"
-#include "processes/node/fifo_bus.h"
-#include "processes/node/parallel_bus.h"
+#include "processes/node/bus/fifo_bus.h"
+#include "processes/node/bus/parallel_bus.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/codec.h"
 
 namespace airdos {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "processes/node/channel_digests.h"
-#include "processes/node/log_source.h"
+#include "processes/node/log/channel_digests.h"
+#include "processes/node/log/log_source.h"
 #include "processes/node/node.h"
 #include "processes/node/run_tally.h"
 

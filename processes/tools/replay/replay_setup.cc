@@ -1,9 +1,6 @@
 #include "processes/tools/replay/replay_setup.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -19,8 +16,8 @@
 #include "processes/frontend/frontend_node.h"
 #include "processes/human_tracker/human_tracker_node.h"
 #include "processes/map_recorder/map_recorder_node.h"
-#include "processes/node/channels.h"
-#include "processes/node/process_cli.h"
+#include "processes/node/live/process_cli.h"
+#include "processes/node/message/channels.h"
 #include "processes/optimizer/optimizer_node.h"
 #include "processes/stereo_player/dataset_source.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/util/output_files.h"
-#include "processes/node/log_source.h"
+#include "processes/node/log/log_source.h"
 #include "processes/tools/replay/replay.h"
 
 namespace airdos {

@@ -6,7 +6,7 @@
 
 #include "common/simulation/settings.h"
 #include "common/util/output_files.h"
-#include "processes/node/program_cli.h"
+#include "processes/node/live/program_cli.h"
 #include "processes/tools/simulate/simulated_log.h"
 
 int main(int argc, char** argv) {

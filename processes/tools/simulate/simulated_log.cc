@@ -10,11 +10,11 @@
 #include "airdos/static_features_t.hpp"
 #include "airdos/stereo_calibration_t.hpp"
 #include "common/human/skeleton.h"
-#include "processes/node/channels.h"
-#include "processes/node/codec.h"
-#include "processes/node/conversions.h"
-#include "processes/node/event_log.h"
-#include "processes/node/header.h"
+#include "processes/node/log/event_log.h"
+#include "processes/node/message/channels.h"
+#include "processes/node/message/codec.h"
+#include "processes/node/message/conversions.h"
+#include "processes/node/message/header.h"
 
 namespace airdos {
 namespace {

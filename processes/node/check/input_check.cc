@@ -1,0 +1,71 @@
+#include "processes/node/check/input_check.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "common/check/check_files.h"
+#include "common/check/check_folder.h"
+#include "common/util/error.h"
+#include "processes/node/check/check_log.h"
+
+namespace airdos {
+namespace {
+
+std::string Text(const std::string& path, const Finding& finding) {
+  return (finding.where.empty() ? path : finding.where) + ": " + finding.what;
+}
+
+std::string HowToGoOn(const std::string& path, std::size_t num_errors) {
+  const std::string more =
+      num_errors > 1 ? " (and " + std::to_string(num_errors - 1) + " more errors)" : "";
+  return more + "; 'airdos-check " + path + "' says more, --no-check goes on all the same";
+}
+
+}  // namespace
+
+FindingList CheckInput(const std::string& path, const CheckOptions& options) {
+  FindingList findings;
+  if (std::filesystem::is_directory(path)) {
+    CheckFolder(path, options, &findings);
+  } else {
+    CheckLog(path, options, &findings);
+  }
+  return findings;
+}
+
+void CheckBeforeRun(const std::string& path, const std::string& calibration,
+                    const std::function<void(const std::string&)>& say) {
+  CheckOptions options;
+  options.depth = CheckOptions::Depth::kQuick;
+  options.calibration = calibration;
+  const FindingList findings = CheckInput(path, options);
+  std::vector<std::string> errors;
+  std::vector<std::string> warnings;
+  for (const Finding& finding : findings.findings()) {
+    // What was assumed the source says itself, checked or not. And of a log that is damaged every
+    // event that is whole is worth playing: a recording that a power cut ended, say.
+    const bool is_known = finding.kind == kAssumedKind;
+    const bool is_survived = finding.kind == kLogDamagedKind;
+    if (finding.severity == Severity::kError && !is_survived) {
+      errors.push_back(Text(path, finding));
+    } else if (finding.severity != Severity::kNote && !is_known) {
+      warnings.push_back("warning: " + Text(path, finding));
+    }
+  }
+  if (!errors.empty()) throw InputError(errors[0] + HowToGoOn(path, errors.size()));
+  for (const std::string& warning : warnings) say(warning);
+}
+
+void AddCalibrationOption(CLI::App* app, std::string* calibration) {
+  app->add_option("--calibration", *calibration,
+                  std::string("of a folder without one, by name: ") + kPublicCalibration +
+                      " is that of the public set");
+}
+
+void AddInputCheckOptions(CLI::App* app, InputCheckOptions* options) {
+  app->add_flag("--no-check", options->is_off, "play the input without a look at it beforehand");
+  AddCalibrationOption(app, &options->calibration);
+}
+
+}  // namespace airdos

@@ -1,0 +1,65 @@
+#include "processes/node/live/process_main.h"
+
+#include <iostream>
+#include <opencv2/core/utility.hpp>
+
+#include "common/util/version.h"
+#include "processes/node/live/lcm_runner.h"
+#include "processes/node/live/lcm_transport.h"
+#include "processes/node/live/process_cli.h"
+
+namespace airdos {
+namespace {
+
+constexpr double kLockstepDeadline_s = 5;
+constexpr double kRealtimeDeadline_s = 0.2;
+
+int Run(const ProcessInfo& info, const CommonArguments& arguments, LcmRunnerOptions options) {
+  InstallStopSignals();
+  cv::setNumThreads(1);  // several threads may add in another order
+  ConfigReader config = ReadConfig(arguments);
+  const std::unique_ptr<Node> node = info.make_node(&config);
+  FinishConfig(config, arguments);
+  LcmTransport transport(arguments.lcm_url);
+  options.process = info.program;
+  options.publishes_frame_done = info.publishes_frame_done;
+  LcmRunner runner(node.get(), &transport, options, &std::cerr);
+  runner.Start();
+  std::cout << info.program << " READY version " << kVersion << " url " << arguments.lcm_url
+            << " config " << arguments.config_file << std::endl;
+  runner.Run();
+  node->Finish();
+  const std::string why_in_vain = node->why_in_vain();
+  if (!why_in_vain.empty()) std::cerr << info.program << ": " << why_in_vain << std::endl;
+  return runner.has_refused() || !why_in_vain.empty() ? 1 : 0;
+}
+
+}  // namespace
+
+int RunNodeProcess(int argc, char** argv, const ProcessInfo& info) {
+  using Pace = LcmRunnerOptions::Pace;
+  CLI::App app(info.description, info.program);
+  CommonArguments arguments;
+  AddCommonOptions(info.config_name, &app, &arguments);
+  LcmRunnerOptions options;
+  std::string pace = "lockstep";
+  app.add_option("--pace", pace, "lockstep: every frame is worked on; realtime: the newest one")
+      ->capture_default_str()
+      ->check(OneOf({"lockstep", "realtime"}));
+  CLI::Option* deadline =
+      app.add_option("--deadline-s", options.deadline_s,
+                     "A frame that lacks inputs for longer is completed without (s); default " +
+                         std::string("5 in lockstep, 0.2 in realtime"))
+          ->check(CLI::Range(1e-3, 1e6));
+  if (info.add_options) info.add_options(&app, arguments);
+  return RunProgram(argc, argv, &app, [&] {
+    options.pace = pace == "lockstep" ? Pace::kLockstep : Pace::kRealtime;
+    if (deadline->count() == 0) {
+      options.deadline_s =
+          options.pace == Pace::kLockstep ? kLockstepDeadline_s : kRealtimeDeadline_s;
+    }
+    return Run(info, arguments, options);
+  });
+}
+
+}  // namespace airdos

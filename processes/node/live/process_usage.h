@@ -1,0 +1,35 @@
+#ifndef AIRDOS_PROCESSES_NODE_LIVE_PROCESS_USAGE_H_
+#define AIRDOS_PROCESSES_NODE_LIVE_PROCESS_USAGE_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace airdos {
+
+/// Wall clock, us. For latency and heartbeats only: the time of data is its capture time.
+std::int64_t WallClock_us();
+/// A clock that never jumps, s.
+double SteadyClock_s();
+/// Processor time of this process so far, ms.
+double CpuTime_ms();
+/// Resident memory of this process, MB.
+double ResidentMemory_mb();
+
+/// Percentiles over the last values.
+class RecentValues {
+ public:
+  explicit RecentValues(std::size_t capacity) : capacity_(capacity) {}
+  void Add(double value);
+  /// `fraction` in 0..1; nearest rank; 0 while there is no value.
+  double Percentile(double fraction) const;
+
+ private:
+  std::size_t capacity_;
+  std::size_t next_ = 0;
+  std::vector<double> values_;
+};
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_NODE_LIVE_PROCESS_USAGE_H_

@@ -1,0 +1,32 @@
+#ifndef AIRDOS_PROCESSES_NODE_MESSAGE_CONVERSIONS_H_
+#define AIRDOS_PROCESSES_NODE_MESSAGE_CONVERSIONS_H_
+
+#include "airdos/stereo_calibration_t.hpp"
+#include "common/geometry/se3.h"
+#include "common/geometry/stereo_camera.h"
+
+namespace airdos {
+
+// The one place where messages and the types of common/ are converted: quaternions are w, x, y, z
+// in messages.
+
+StereoCamera ToStereoCamera(const stereo_calibration_t& message);
+void FromStereoCamera(const StereoCamera& camera, stereo_calibration_t* message);
+
+inline Se3 ToSe3(const double position[3], const double orientation[4]) {
+  return {Eigen::Quaterniond(orientation[0], orientation[1], orientation[2], orientation[3])
+              .normalized(),
+          Eigen::Vector3d(position[0], position[1], position[2])};
+}
+
+inline void FromSe3(const Se3& pose, double position[3], double orientation[4]) {
+  for (int i = 0; i < 3; ++i) position[i] = pose.translation[i];
+  orientation[0] = pose.rotation.w();
+  orientation[1] = pose.rotation.x();
+  orientation[2] = pose.rotation.y();
+  orientation[3] = pose.rotation.z();
+}
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_NODE_MESSAGE_CONVERSIONS_H_

@@ -1,0 +1,30 @@
+#ifndef AIRDOS_PROCESSES_NODE_MESSAGE_HEADER_H_
+#define AIRDOS_PROCESSES_NODE_MESSAGE_HEADER_H_
+
+#include <cstdint>
+
+namespace airdos {
+
+/// What every message starts with.
+struct Header {
+  std::int64_t utime = 0;    ///< us, capture time of the image
+  std::int64_t seq = 0;      ///< image number
+  std::int64_t session = 0;  ///< chosen by the source of the images
+};
+
+template <class Message>
+Header HeaderOf(const Message& message) {
+  return {message.utime, message.seq, message.session};
+}
+
+/// First of the running numbers (landmarks, people) that a process gives which hears a session from
+/// image `first_seq` on, if it makes fewer than `most_per_frame` of them in a frame: 1 at the start
+/// of a session. A process that was killed and started again so never uses a number that the one
+/// before gave, and the others still know.
+inline std::int64_t FirstRunningNumber(std::int64_t first_seq, std::int64_t most_per_frame) {
+  return 1 + first_seq * most_per_frame;
+}
+
+}  // namespace airdos
+
+#endif  // AIRDOS_PROCESSES_NODE_MESSAGE_HEADER_H_
