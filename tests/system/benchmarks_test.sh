@@ -31,27 +31,27 @@ says() { grep -qF -e "$1" "$work/out" "$work/err" || fail "'$(cat "$work/out" "$
 wrong_options_exit_2_in_one_line() {
   local script
   for script in sequences people_help perturbed shibuya kitti_tracking speed memory; do
-    expect 0 "Usage: launch_scripts/benchmark_$script.sh" "$scripts/benchmark_$script.sh" --help
-    expect 2 "--no-such-option" "$scripts/benchmark_$script.sh" --no-such-option
-    expect 2 "no folder '/nonexistent'" "$scripts/benchmark_$script.sh" /nonexistent
-    expect 2 "--run-dir needs a value" "$scripts/benchmark_$script.sh" "$work" --run-dir
-    expect 2 "(see --help)" "$scripts/benchmark_$script.sh"
+    expect 0 "Usage: launch_scripts/benchmark/benchmark_$script.sh" "$scripts/benchmark/benchmark_$script.sh" --help
+    expect 2 "--no-such-option" "$scripts/benchmark/benchmark_$script.sh" --no-such-option
+    expect 2 "no folder '/nonexistent'" "$scripts/benchmark/benchmark_$script.sh" /nonexistent
+    expect 2 "--run-dir needs a value" "$scripts/benchmark/benchmark_$script.sh" "$work" --run-dir
+    expect 2 "(see --help)" "$scripts/benchmark/benchmark_$script.sh"
   done
   for script in people_help perturbed shibuya kitti_tracking; do
-    expect 2 "--jobs: not a whole number above 0: '0'" "$scripts/benchmark_$script.sh" "$work" --jobs 0
+    expect 2 "--jobs: not a whole number above 0: '0'" "$scripts/benchmark/benchmark_$script.sh" "$work" --jobs 0
   done
   for script in sequences perturbed shibuya kitti_tracking; do
-    expect 2 "--modes: 'full' is none of" "$scripts/benchmark_$script.sh" "$work" --modes 'on full'
+    expect 2 "--modes: 'full' is none of" "$scripts/benchmark/benchmark_$script.sh" "$work" --modes 'on full'
   done
-  expect 2 "--caps: not a whole number above 0: 'x'" "$scripts/benchmark_people_help.sh" "$work" --caps '3 x'
-  expect 2 "--people: 'full' is none of" "$scripts/benchmark_speed.sh" "$work" --people full
-  expect 2 "--live: 'maybe' is neither yes nor no" "$scripts/benchmark_speed.sh" "$work" --live maybe
-  expect 2 "--loops: not a whole number above 0: '0'" "$scripts/benchmark_memory.sh" "$work" --loops 0
+  expect 2 "--caps: not a whole number above 0: 'x'" "$scripts/benchmark/benchmark_people_help.sh" "$work" --caps '3 x'
+  expect 2 "--people: 'full' is none of" "$scripts/benchmark/benchmark_speed.sh" "$work" --people full
+  expect 2 "--live: 'maybe' is neither yes nor no" "$scripts/benchmark/benchmark_speed.sh" "$work" --live maybe
+  expect 2 "--loops: not a whole number above 0: '0'" "$scripts/benchmark/benchmark_memory.sh" "$work" --loops 0
   mkdir -p "$work/a/same" "$work/b/same"
-  expect 2 "two sequences have the name 'same'" "$scripts/benchmark_perturbed.sh" "$work/a/same/" "$work/b/same"
-  expect 2 "more than one folder" "$scripts/benchmark_shibuya.sh" "$work/a" "$work/b"
-  expect 2 "holds no sequence" "$scripts/benchmark_shibuya.sh" "$work/a"
-  expect 2 "holds none of the sequences" "$scripts/benchmark_kitti_tracking.sh" "$work/a"
+  expect 2 "two sequences have the name 'same'" "$scripts/benchmark/benchmark_perturbed.sh" "$work/a/same/" "$work/b/same"
+  expect 2 "more than one folder" "$scripts/benchmark/benchmark_shibuya.sh" "$work/a" "$work/b"
+  expect 2 "holds no sequence" "$scripts/benchmark/benchmark_shibuya.sh" "$work/a"
+  expect 2 "holds none of the sequences" "$scripts/benchmark/benchmark_kitti_tracking.sh" "$work/a"
 }
 
 # Stand-ins: airdos-replay writes down its arguments; airdos-evaluate gives an ATE that depends on the run. A folder named
@@ -119,7 +119,7 @@ run() {
   local code=$1 script=$2
   shift 2
   rm -rf "$work/run" "$work/calls"
-  expect "$code" '' env AIRDOS_BIN="$work/bin" "$scripts/$script.sh" "$@" --run-dir "$work/run"
+  expect "$code" '' env AIRDOS_BIN="$work/bin" "$scripts/benchmark/$script.sh" "$@" --run-dir "$work/run"
 }
 
 people_help_runs_each_cap_in_both_modes() {
@@ -154,7 +154,7 @@ shibuya_says_what_is_missing_failed_or_ambiguous() {
   says '- tilted: not found out'
   says 'tilted, on: no figures, because the run with masks has none'
   mkdir -p "$base/again/standing-01"/{image_0,image_1}
-  expect 2 "'Standing01' is there twice" env AIRDOS_BIN="$work/bin" "$scripts/benchmark_shibuya.sh" "$base"
+  expect 2 "'Standing01' is there twice" env AIRDOS_BIN="$work/bin" "$scripts/benchmark/benchmark_shibuya.sh" "$base"
 }
 
 kitti_tracking_takes_28_from_testing() {

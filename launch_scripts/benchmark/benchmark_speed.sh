@@ -2,7 +2,7 @@
 # How fast the chain is on each sequence, in airdos-replay and live, and how its solver grows with people and window: prints
 # tables (Markdown), writes them as JSON and draws them.
 #
-# Usage: launch_scripts/benchmark_speed.sh FOLDER… [--people MODE] [--live yes|no] [--solver yes|no] [--run-dir FOLDER] [--set P:S.K=V]…
+# Usage: launch_scripts/benchmark/benchmark_speed.sh FOLDER… [--people MODE] [--live yes|no] [--solver yes|no] [--run-dir FOLDER] [--set P:S.K=V]…
 #   FOLDER…           sequences, each in a layout that airdos-replay knows
 #   --people MODE     of airdos-replay: off, mask_only or on (default: as configured, as it always is live)
 #   --live yes|no     also run the four processes in lock-step, over LCM in a network of their own (default yes)
@@ -17,8 +17,8 @@
 # other work falsifies all but CPU times.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-# shellcheck source=launch_scripts/benchmark_common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
+# shellcheck source=launch_scripts/benchmark/benchmark_common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
 people='' live=yes solver=yes run_dir=$AIRDOS_RUNS/speed
@@ -49,7 +49,7 @@ run_live() {
   local -A peaks=()
   rm -rf "$run"
   mkdir -p "$run"
-  start_job 1 "$(dirname "$0")/run_live.sh" --data "$folder" --run-dir "$run" > "$run/run_live.log" 2>&1
+  start_job 1 "$AIRDOS_ROOT/launch_scripts/run_live.sh" --data "$folder" --run-dir "$run" > "$run/run_live.log" 2>&1
   live_pid=$!
   while kill -0 "$live_pid" 2> /dev/null; do
     for process in frontend human-tracker optimizer map-recorder; do

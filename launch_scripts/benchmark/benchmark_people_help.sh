@@ -2,7 +2,7 @@
 # The curve of when people help: every sequence with the static features a frame capped ever lower, with people only masked
 # (mask_only) and with people in the estimate (on). Prints tables (Markdown), writes them as JSON and draws the curve.
 #
-# Usage: launch_scripts/benchmark_people_help.sh FOLDER… [--caps LIST] [--jobs N] [--run-dir FOLDER] [--set P:S.K=V]…
+# Usage: launch_scripts/benchmark/benchmark_people_help.sh FOLDER… [--caps LIST] [--jobs N] [--run-dir FOLDER] [--set P:S.K=V]…
 #   FOLDER…           sequences, each in a layout that airdos-replay knows
 #   --caps LIST       static features a frame at most (default "3 5 8 15 30 100 uncapped"; uncapped: as configured)
 #   --jobs N          runs at a time (default: as many as there are cores)
@@ -16,8 +16,8 @@
 # (common/evaluation/trajectory_error.h). All of the refined trajectory.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-# shellcheck source=launch_scripts/benchmark_common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
+# shellcheck source=launch_scripts/benchmark/benchmark_common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
 caps='3 5 8 15 30 100 uncapped' run_dir=$AIRDOS_RUNS/people_help jobs=$(num_cores)

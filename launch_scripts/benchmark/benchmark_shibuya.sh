@@ -2,7 +2,7 @@
 # The paper's Table II: ATE on the sequences of TartanAir-Shibuya, ours (people off, mask_only, on) beside the published
 # figures of AirDOS, ORB-SLAM and VDO-SLAM.
 #
-# Usage: launch_scripts/benchmark_shibuya.sh DATASET_DIR [--modes "off mask_only on"] [--jobs N] [--run-dir FOLDER] [--set P:S.K=V]…
+# Usage: launch_scripts/benchmark/benchmark_shibuya.sh DATASET_DIR [--modes "off mask_only on"] [--jobs N] [--run-dir FOLDER] [--set P:S.K=V]…
 #   DATASET_DIR       folder with the sequences, up to three folders deep; a sequence is a folder with image_0 and image_1,
 #                     known by its name (Standing01, roadcrossing_03 …). Those of the paper that are missing are said; others
 #                     are run, too.
@@ -18,8 +18,8 @@
 # figure is.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-# shellcheck source=launch_scripts/benchmark_common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
+# shellcheck source=launch_scripts/benchmark/benchmark_common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
 readonly paper_sequences=(Standing01 Standing02 RoadCrossing03 RoadCrossing04 RoadCrossing05 RoadCrossing06 RoadCrossing07)

@@ -2,7 +2,7 @@
 # The paper's Table I: ATE on sequences of KITTI tracking, with masks: ours (people mask_only, on) beside the published figures
 # of ORB-SLAM and AirDOS.
 #
-# Usage: launch_scripts/benchmark_kitti_tracking.sh DATASET_DIR [--modes "mask_only on"] [--jobs N] [--run-dir FOLDER] [--set P:S.K=V]…
+# Usage: launch_scripts/benchmark/benchmark_kitti_tracking.sh DATASET_DIR [--modes "mask_only on"] [--jobs N] [--run-dir FOLDER] [--set P:S.K=V]…
 #   DATASET_DIR       folder with training/ and testing/, in each image_02/NNNN, image_03/NNNN, calib/NNNN.txt, oxts/NNNN.txt
 #                     and, for people, alphapose_0/NNNN, alphapose_1/NNNN, rcnnseg_image_0/NNNN in the files of
 #                     TartanAir-Shibuya. Sequences that are missing, or that have no people's files, are said.
@@ -18,8 +18,8 @@
 # Mercator's projection, as in KITTI's development kit.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-# shellcheck source=launch_scripts/benchmark_common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
+# shellcheck source=launch_scripts/benchmark/benchmark_common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
 readonly sequences=(testing/0018 testing/0028 training/0013 training/0014 training/0015 training/0019)

@@ -2,7 +2,7 @@
 # Whether memory is bounded: plays a sequence again and again as one long session to the processes (lock-step) and prints how
 # much memory each has and how much disk the map takes, as the run gets longer (Markdown).
 #
-# Usage: launch_scripts/benchmark_memory.sh FOLDER|LOG [--loops N] [--warm-up N] [--run-dir FOLDER]
+# Usage: launch_scripts/benchmark/benchmark_memory.sh FOLDER|LOG [--loops N] [--warm-up N] [--run-dir FOLDER]
 #   FOLDER|LOG        what is played, as one session: image numbers and times go on, the scene jumps at each seam
 #   --loops N         how often (default 400: 20,000 frames of the sample log)
 #   --warm-up N       frames from which on growth counts (default 2000)
@@ -13,8 +13,8 @@
 # Growth: the largest memory after the warm-up over the largest of the warm-up's second half. Exit 1 if one is above 10 %.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-# shellcheck source=launch_scripts/benchmark_common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
+# shellcheck source=launch_scripts/benchmark/benchmark_common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
 readonly processes=(frontend human-tracker optimizer map-recorder)
@@ -41,7 +41,7 @@ sample() {
 mkdir -p "$run_dir"
 rm -f "$run_dir"/{memory.tsv,memory.md,player.log,map.airdos}
 trap end_jobs EXIT
-start_job 1 "$(dirname "$0")/run_live.sh" --data "${operands[0]}" --loop "$loops" --run-dir "$run_dir" > "$run_dir/run_live.log"
+start_job 1 "$AIRDOS_ROOT/launch_scripts/run_live.sh" --data "${operands[0]}" --loop "$loops" --run-dir "$run_dir" > "$run_dir/run_live.log"
 live_pid=$!
 last_frame=''
 while kill -0 "$live_pid" 2> /dev/null; do

@@ -2,7 +2,7 @@
 # How much luck a figure is: each sequence once as configured and five times with one setting changed, in each mode. Prints
 # a row a run, then the median and the worst ATE of each sequence and mode (Markdown).
 #
-# Usage: launch_scripts/benchmark_perturbed.sh FOLDER… [--modes "mask_only on"] [--jobs N] [--run-dir FOLDER] [--set P:S.K=V]…
+# Usage: launch_scripts/benchmark/benchmark_perturbed.sh FOLDER… [--modes "mask_only on"] [--jobs N] [--run-dir FOLDER] [--set P:S.K=V]…
 #   FOLDER…           sequences, each in a layout that airdos-replay knows
 #   --modes LIST      of off, mask_only, on (default: mask_only and on)
 #   --jobs N          runs at a time (default: as many as there are cores)
@@ -18,8 +18,8 @@
 # wrong by more than 0.10 m or 2 degrees.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-# shellcheck source=launch_scripts/benchmark_common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
+# shellcheck source=launch_scripts/benchmark/benchmark_common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
 readonly variants='plain fast_7 fast_10 dilation_6 dilation_10 features_250'

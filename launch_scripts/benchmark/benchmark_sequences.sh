@@ -1,7 +1,7 @@
 #!/bin/bash
 # Runs every sequence with people off, mask_only and on, and prints a table: frames posed, errors, ms a frame.
 #
-# Usage: launch_scripts/benchmark_sequences.sh FOLDER… [--modes "off mask_only on"] [--run-dir FOLDER] [--set P:S.K=V]…
+# Usage: launch_scripts/benchmark/benchmark_sequences.sh FOLDER… [--modes "off mask_only on"] [--run-dir FOLDER] [--set P:S.K=V]…
 #   FOLDER…           sequences, each in TartanAir-Shibuya or KITTI odometry layout
 #   --modes LIST      of off, mask_only, on (default: all three)
 #   --run-dir FOLDER  where maps, trajectories and pictures go (default logs/runs/benchmark)
@@ -12,8 +12,8 @@
 # ms: CPU time a frame, mean, of frontend / human tracker / optimizer, one thread each.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-# shellcheck source=launch_scripts/benchmark_common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
+# shellcheck source=launch_scripts/benchmark/benchmark_common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
 modes='off mask_only on' run_dir=$AIRDOS_RUNS/benchmark
