@@ -2,10 +2,11 @@
 # Looks for inputs that crash, throw, hang or take more than 64 MB at once: builds the fuzz targets (tests/fuzz) with clang's
 # libFuzzer under the address and undefined-behaviour sanitizers, and runs each for some seconds.
 #
-# Usage: launch_scripts/fuzz.sh [--seconds N] [--jobs N] [--build-only] [TARGET…]
+# Usage: launch_scripts/fuzz.sh [--seconds N] [--jobs N] [--build-only] [--with-tests] [TARGET…]
 #   --seconds N   for each target (default 10; an hour in all for the 28 targets: 130)
 #   --jobs N      so many targets at a time (default: one a processor)
 #   --build-only  do not run
+#   --with-tests  build the tests that run under sanitizers beside the targets, of the same objects (test.sh runs them)
 #   --list        the names of the targets (after a build)
 #   --help        this text
 #
@@ -19,7 +20,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 readonly FOLDER=${AIRDOS_FUZZ_BUILD:-$AIRDOS_ROOT/build-fuzz}
 readonly EXIT_SKIPPED=77
 
-seconds=10 jobs=$(nproc) build_only=no list=no
+seconds=10 jobs=$(nproc) build_only=no with_tests=no list=no
 targets=()
 while (($# > 0)); do
   case $1 in
@@ -30,6 +31,7 @@ while (($# > 0)); do
       shift
       ;;
     --build-only) build_only=yes ;;
+    --with-tests) with_tests=yes ;;
     --list) list=yes ;;
     --help | -h)
       print_help
@@ -55,14 +57,18 @@ find_clang() {
 }
 
 build_fuzzers() {
-  local compiler
+  local compiler built=airdos_fuzz tests=OFF
   compiler=$(find_clang)
   if [[ -z $compiler ]]; then
     say "no clang with libFuzzer here (apt-get install clang libclang-rt-14-dev): the fuzz targets are not run"
     exit "$EXIT_SKIPPED"
   fi
-  configure_and_build "$FOLDER" airdos_fuzz -DCMAKE_CXX_COMPILER="$compiler" -DAIRDOS_BUILD_FUZZERS=ON \
-    -DAIRDOS_BUILD_TESTS=OFF -DAIRDOS_BUILD_JAVA=OFF -DCMAKE_BUILD_TYPE=Fuzz "-DCMAKE_CXX_FLAGS_FUZZ=-O1 -g1"
+  if [[ $with_tests == yes ]]; then
+    tests=ON
+    built+=" airdos_tests_${AIRDOS_SANITIZED_TIERS// / airdos_tests_}"
+  fi
+  configure_and_build "$FOLDER" "$built" -DCMAKE_CXX_COMPILER="$compiler" -DAIRDOS_BUILD_FUZZERS=ON \
+    -DAIRDOS_BUILD_TESTS=$tests -DAIRDOS_BUILD_JAVA=OFF -DCMAKE_BUILD_TYPE=Fuzz "-DCMAKE_CXX_FLAGS_FUZZ=-O1 -g1"
 }
 
 # link_to NAME: the program under the name that it goes by.

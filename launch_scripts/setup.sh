@@ -24,6 +24,9 @@ AIRDOS_PACKAGES=(
 # shellcheck disable=SC2034
 AIRDOS_TEST_PACKAGES=(clang libclang-rt-14-dev)
 
+# The tiers of tests that run under sanitizers.
+readonly AIRDOS_SANITIZED_TIERS='unit numeric node'
+
 is_installed() { [[ $(dpkg-query -W -f='${db:Status-Status}' "$1" 2> /dev/null) == installed ]]; }
 
 # install_packages [FURTHER PACKAGES…]

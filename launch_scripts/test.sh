@@ -12,7 +12,7 @@ set -euo pipefail
 # shellcheck source=launch_scripts/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
-readonly SANITIZED_TIERS='unit numeric node'
+readonly EXIT_SKIPPED=77
 
 sanitizers=yes fuzz=yes
 while (($# > 0)); do
@@ -51,33 +51,44 @@ run_tests() {
   [[ $failed == no ]]
 }
 
-# run_fuzzers: false if a target failed; without clang it says so and is true.
-run_fuzzers() {
-  local code=0
-  "$AIRDOS_ROOT/launch_scripts/fuzz.sh" --seconds 10 || code=$?
-  if ((code == 77)); then say "SKIPPED: the fuzz targets (no clang)"; fi
-  ((code == 0 || code == 77))
+# build_sanitized: sets sanitized to the folder with the tests to be run. One build with clang for them and the fuzz targets;
+# where those are not wanted, or there is no clang, one with g++, and fuzz becomes "no".
+build_sanitized() {
+  local code=$EXIT_SKIPPED
+  if [[ $fuzz == yes ]]; then
+    code=0
+    "$AIRDOS_ROOT/launch_scripts/fuzz.sh" --build-only --with-tests || code=$?
+  fi
+  sanitized=$AIRDOS_ROOT/build-fuzz
+  ((code == 0)) && return
+  ((code == EXIT_SKIPPED)) || exit "$code"
+  if [[ $fuzz == yes ]]; then skipped_fuzzers=yes; fi
+  fuzz=no
+  sanitized=$AIRDOS_ROOT/build-sanitize
+  # -O1 -g1: the sanitizers stay bearable on code that leans on Eigen's inlining, and say line numbers.
+  configure_and_build "$sanitized" "airdos_tests_${AIRDOS_SANITIZED_TIERS// / airdos_tests_}" \
+    -DAIRDOS_SANITIZE=ON -DAIRDOS_BUILD_JAVA=OFF -DCMAKE_BUILD_TYPE=Sanitize "-DCMAKE_CXX_FLAGS_SANITIZE=-O1 -g1"
 }
 
 if [[ $fuzz == yes ]]; then install_packages "${AIRDOS_TEST_PACKAGES[@]}"; else install_packages; fi
-failures=0
+failures=0 sanitized='' skipped_fuzzers=no
 
 if [[ $sanitizers == yes ]]; then
-  # -O1 -g1: the sanitizers stay bearable on code that leans on Eigen's inlining, and say line numbers.
-  configure_and_build "$AIRDOS_ROOT/build-sanitize" "airdos_tests_${SANITIZED_TIERS// / airdos_tests_}" \
-    -DAIRDOS_SANITIZE=ON -DAIRDOS_BUILD_JAVA=OFF -DCMAKE_BUILD_TYPE=Sanitize "-DCMAKE_CXX_FLAGS_SANITIZE=-O1 -g1"
+  build_sanitized
   say "tests under sanitizers"
   # On glibc 2.36 the leak checker of GCC 12 may follow a block of thread-local storage that it misread, and crash.
   export LSAN_OPTIONS=intercept_tls_get_addr=0
-  run_tests "$AIRDOS_ROOT/build-sanitize" -L "^(${SANITIZED_TIERS// /|})\$" || failures=1
+  run_tests "$sanitized" -L "^(${AIRDOS_SANITIZED_TIERS// /|})\$" || failures=1
 fi
 
-if [[ $fuzz == yes ]]; then run_fuzzers || failures=1; fi
+if [[ $fuzz == yes ]]; then "$AIRDOS_ROOT/launch_scripts/fuzz.sh" --with-tests --seconds 10 || failures=1; fi
+if [[ $skipped_fuzzers == yes ]]; then say "SKIPPED: the fuzz targets (no clang)"; fi
 
 configure_and_build "$AIRDOS_ROOT/build" all -DCMAKE_BUILD_TYPE=Release
 sanitized_failures=$failures
 if ((sanitized_failures > 0)); then say "tests or fuzz targets FAILED under the sanitizers (see above); now the others"; fi
-run_tests "$AIRDOS_ROOT/build" || failures=1
+# The system tests wait more than they compute.
+run_tests "$AIRDOS_ROOT/build" -j "$(($(nproc) + 2))" || failures=1
 # Else the last line might be that all tests passed.
 if ((sanitized_failures > 0)); then say "FAILED: tests or fuzz targets under the sanitizers (see above)"; fi
 exit "$failures"

@@ -14,8 +14,7 @@ add_test(NAME includes_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/includes_test.sh
 set_tests_properties(includes_test PROPERTIES LABELS unit TIMEOUT 60)
 add_test(NAME benchmarks_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/benchmarks_test.sh ${PROJECT_SOURCE_DIR})
 set_tests_properties(benchmarks_test PROPERTIES LABELS system TIMEOUT 180 SKIP_RETURN_CODE 77)
-# Alone, as it measures how the chain gets on.
 add_test(NAME long_run_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/long_run_test.sh ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR})
-set_tests_properties(long_run_test PROPERTIES LABELS system TIMEOUT 600 SKIP_RETURN_CODE 77 RUN_SERIAL ON)
+set_tests_properties(long_run_test PROPERTIES LABELS system TIMEOUT 600 SKIP_RETURN_CODE 77 COST 100)
 add_test(NAME mutation_lists_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/mutation_lists_test.sh ${PROJECT_SOURCE_DIR})
 set_tests_properties(mutation_lists_test PROPERTIES LABELS system TIMEOUT 180)

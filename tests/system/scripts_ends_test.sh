@@ -87,7 +87,7 @@ FAKE
 }
 
 make_root() {
-  mkdir -p "$root"/{launch_scripts,logs,build/bin,build-fuzz/bin}
+  mkdir -p "$root"/{launch_scripts,logs,build/bin,build-fuzz/bin,build-sanitize}
   cp "$scripts"/*.sh "$root/launch_scripts/"
   # Two packages will do: each is asked for by a process of its own.
   sed -i '/^AIRDOS_PACKAGES=($/,/^)$/c AIRDOS_PACKAGES=(xauth jq)' "$root/launch_scripts/setup.sh"
@@ -261,12 +261,13 @@ tests_of() {
 # As all is well. The system test must not be run under sanitizers.
 all_is_well() {
   fresh
-  tests_of build-sanitize << 'TESTS'
+  tests_of build-fuzz << 'TESTS'
 unit_good unit true
 numeric_good numeric true
 node_good node true
 system_bad system false
 TESTS
+  cp "$root/build-fuzz/CTestTestfile.cmake" "$root/build-sanitize/"
   tests_of build << 'TESTS'
 unit_good unit true
 system_good system true
@@ -288,21 +289,21 @@ test_runs_all_and_says_so() {
   (($(grep -c 'tests passed' "$work/out") == 2)) || fail "not one closing line each: $(cat "$work/out")"
   grep -E '^cmake|_first ' "$work/calls" | sed 's/ -j.*--target//; s/ -D.*//; s/ -max_len.*//' > "$work/steps"
   diff "$work/steps" - << CALLS || fail "other calls"
-cmake -S $root -B $root/build-sanitize -G Ninja
-cmake --build $root/build-sanitize airdos_tests_unit airdos_tests_numeric airdos_tests_node
 cmake -S $root -B $root/build-fuzz
-cmake --build $root/build-fuzz airdos_fuzz
+cmake --build $root/build-fuzz airdos_fuzz airdos_tests_unit airdos_tests_numeric airdos_tests_node
+cmake -S $root -B $root/build-fuzz
+cmake --build $root/build-fuzz airdos_fuzz airdos_tests_unit airdos_tests_numeric airdos_tests_node
 airdos_fuzz_first -max_total_time=10
 cmake -S $root -B $root/build
 cmake --build $root/build all
 CALLS
-  ran 1 'build-sanitize .*-DAIRDOS_SANITIZE=ON'
+  ran 2 'build-fuzz .*-DAIRDOS_BUILD_FUZZERS=ON .*-DAIRDOS_BUILD_TESTS=ON'
   ran 1 'dpkg-query .* clang$'
 }
 
 test_runs_the_normal_build_although_the_sanitized_fails() {
   all_is_well
-  tests_of build-sanitize <<< 'node_bad node echo heap-use-after-free; exit 1'
+  tests_of build-fuzz <<< 'node_bad node echo heap-use-after-free; exit 1'
   run 1 "$test"
   says out 'heap-use-after-free'
   says out '0% tests passed, 1 tests failed out of 1'
@@ -318,10 +319,6 @@ test_fails_where_a_fuzz_target_does() {
   says err 'second FAILED on '
   says out 'fuzz.sh: 3 targets for 10 s each, 1 failed'
   says_not out SKIPPED
-  says out "$well"
-  ends_with out "$failed_before"
-  all_is_well
-  FAILS=build:build-fuzz run 1 "$test"
   says out "$well"
   ends_with out "$failed_before"
 }
@@ -344,6 +341,8 @@ test_says_that_there_is_no_clang() {
   all_is_well
   rm "$work/bin/clang++"
   run 0 "$test"
+  ran 1 'build-sanitize .*-DAIRDOS_SANITIZE=ON'
+  says out "$well_sanitized"
   says out 'test.sh: SKIPPED: the fuzz targets (no clang)'
   ends_with out "$well"
   ln -s "$work/clang++" "$work/bin/clang++"
@@ -376,17 +375,20 @@ no_result() {
 test_without_a_result_is_no_success() {
   no_result build
   no_result build --no-sanitizers
-  no_result build-sanitize
+  no_result build-fuzz
+  no_result build-sanitize --no-fuzz
   says_not out "$well"
 }
 
 test_ends_where_a_build_fails() {
-  local folder
-  for folder in build build-sanitize; do
+  local folder script
+  for folder in build build-fuzz build-sanitize; do
+    script=test
+    if [[ $folder == build-fuzz ]]; then script=fuzz; fi
     all_is_well
-    FAILS=build:$folder run 1 "$test"
+    FAILS="build:$folder $([[ $folder == build-sanitize ]] && echo libfuzzer)" run 1 "$test"
     says err 'a.cc:1: error: nonsense'
-    ends_with err "test.sh: the build failed (log: $root/$folder/compile.log)"
+    ends_with err "$script.sh: the build failed (log: $root/$folder/compile.log)"
     says_not out "$well"
   done
 }
@@ -402,7 +404,7 @@ test_leaves_out_what_it_is_told_to() {
   ends_with out "$well"
 }
 
-link_tools awk basename cat chmod ctest cut diff dirname du env grep ln mkdir mkfifo nproc rm rmdir sed sh sleep tail tee touch uname wc
+link_tools awk basename cat chmod cp ctest cut diff dirname du env grep ln mkdir mkfifo nproc rm rmdir sed sh sleep tail tee touch uname wc
 make_root
 ln -s "$work/clang++" "$work/bin/clang++"
 export PATH=$work/bin:$work/tools

@@ -9,7 +9,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/script_checks.sh"
 
 each_script_says_its_version() {
   local script name
-  for script in "$scripts"/*.sh; do
+  for script in "$scripts"/*.sh "$scripts"/benchmark/*.sh; do
     name=$(basename "$script")
     [[ $name != *common.sh ]] || continue
     "$script" --version > "$work/out" 2>&1 < /dev/null || fail "$name --version: exit code $?"
