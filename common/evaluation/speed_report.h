@@ -40,8 +40,8 @@ struct SolveTime {
   std::optional<double> iteration_ms;
 };
 
-/// Rows of JSON as launch_scripts/benchmark/benchmark_speed.sh writes them. Throws InputError naming file and
-/// row.
+/// Rows of JSON as launch_scripts/benchmark/benchmark_speed.sh writes them. Throws InputError
+/// naming file and row.
 std::vector<ChainSpeed> ReadChainSpeeds(const std::string& path);
 /// The file of airdos_solver_benchmark --benchmark_out_format=json; benchmarks of other names than
 /// BM_PaperProblem/<data>/<variant>/<solver> and BM_Scaling/<people>/<window>/<solver>/<cold|warm>
