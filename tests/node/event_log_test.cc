@@ -115,7 +115,7 @@ TEST_F(EventLogTest, ReadsWhatLcmWrote) {
 
 TEST_F(EventLogTest, MissingEmptyOrForeignFileIsBadInput) {
   EXPECT_THROW(EventLogReader("/nonexistent/x.lcm"), InputError);
-  EXPECT_THROW(EventLogReader(testing::TempDir()), InputError);
+  EXPECT_THROW(EventLogReader reader(testing::TempDir()), InputError);
   SetBytes("");
   EXPECT_THROW(EventLogReader reader(path_), InputError);
   SetBytes(std::string(200000, 'x'));
