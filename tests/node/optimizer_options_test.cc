@@ -203,6 +203,12 @@ SyntheticScene BusyScene() {
     const std::int64_t k = input.id.value;
     input.motion_sigma_position_m = 0.03;
     input.motion_sigma_orientation_rad = 0.02;
+    // Not in the first key frame, which remembers all its landmarks; then seen, and long not seen.
+    const auto is_hidden = [k](const auto& feature) {
+      return (k == 0 || (k >= 5 && k < 10)) && feature.id.value % 8 == 0;
+    };
+    input.features.erase(std::remove_if(input.features.begin(), input.features.end(), is_hidden),
+                         input.features.end());
     const bool is_weak = k >= 10 && k % 8 >= 4;
     if (is_weak) input.features.resize(std::min<std::size_t>(input.features.size(), k % 3 * 4));
     for (auto human = input.humans.begin(); human != input.humans.end();) {
