@@ -44,7 +44,8 @@ void AddCurveCommand(CLI::App* app) {
   CLI::App* const command = app->add_subcommand(
       "curve", "When people help: errors against the number of static features");
   AddFile("--runs", &arguments->runs,
-          "JSON lines as launch_scripts/benchmark/benchmark_people_help.sh writes them, one a run", command)
+          "JSON lines as launch_scripts/benchmark/benchmark_people_help.sh writes them, one a run",
+          command)
       ->required();
   AddFile("--json", &arguments->json, "file to write all figures to", command);
   AddFile("--plot", &arguments->plot, "PNG file to draw the curve into", command);
