@@ -57,6 +57,7 @@ max_growth_percent=$((minutes < 3 ? 30 : 10))
 
 # More rounds than there is time for, of at least 1 s each; the run is ended when the time is over.
 loops=$((minutes * 60))
+if [[ $pace == lockstep ]]; then loops=$((100 * loops)); fi # a round takes as long as the machine needs
 
 mkdir -p "$run_dir"
 rm -f "$run_dir"/{memory.tsv,long_run.md}

@@ -162,6 +162,14 @@ bad_run_fails() {
   [[ ! -e $results/long_run.md ]] || fail "a table of nothing"
 }
 
+lockstep_is_handed_on_with_rounds_enough_for_a_fast_machine() {
+  good_figures
+  fresh
+  long_run 0 '' --pace lockstep
+  ran 1 "^run_live.sh --data $root/logs/road_crossing06.lcm --loop 100 --pace lockstep --run-dir $results\$"
+  long_run 2 "--pace: neither realtime nor lockstep: 'fast'" --pace fast
+}
+
 interrupted_run_leaves_nobody() {
   local pid got=0
   nobody_is_left() { [[ -z $(pids_of run_live) ]]; }
@@ -184,5 +192,6 @@ lost_images_fail_whatever_the_limit
 idle_process_fails
 growth_fails_above_the_limit
 bad_run_fails
+lockstep_is_handed_on_with_rounds_enough_for_a_fast_machine
 interrupted_run_leaves_nobody
 echo "all checks passed"

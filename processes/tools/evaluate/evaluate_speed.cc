@@ -41,7 +41,8 @@ void AddSpeedCommand(CLI::App* app) {
   const auto arguments = std::make_shared<SpeedArguments>();
   CLI::App* const command = app->add_subcommand("speed", "How fast the chain and its solver are");
   AddFile("--runs", &arguments->runs,
-          "JSON lines as launch_scripts/benchmark/benchmark_speed.sh writes them, one a sequence", command);
+          "JSON lines as launch_scripts/benchmark/benchmark_speed.sh writes them, one a sequence",
+          command);
   AddFile("--solver", &arguments->solver, "JSON of airdos_solver_benchmark", command);
   AddFile("--json", &arguments->json, "file to write all figures to", command);
   AddFile("--plot", &arguments->plot, "PNG file to draw how they grow into", command);
