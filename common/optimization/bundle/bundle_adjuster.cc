@@ -10,7 +10,7 @@
 namespace airdos {
 namespace {
 
-/// Solves the graph as it is now, and again after factors were removed from it.
+/// Solves the graph as it is, and again after factors have been removed from it.
 class Minimizer {
  public:
   Minimizer(const BundleOptions& bundle, FactorGraph* graph, std::vector<double>* memory) {

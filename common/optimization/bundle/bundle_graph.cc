@@ -52,7 +52,7 @@ void BundleGraph::AddLandmarks() {
       is_seen_by_free_frame[landmark] = true;
     }
   }
-  // The others cannot influence a pose: out of the linear system with them.
+  // Fixed landmarks cannot influence a pose, so they are kept out of the linear system.
   for (std::size_t i = 0; i < landmark_blocks_.size(); ++i) {
     const bool is_constant = problem_->landmarks[i].is_fixed || !is_seen_by_free_frame[i];
     if (is_constant) graph_.SetConstant(landmark_blocks_[i]);
@@ -67,7 +67,7 @@ void BundleGraph::AddAccelerations() {
     };
     const double step_1_s = time_s(b) - time_s(a);
     const double step_2_s = time_s(c) - time_s(b);
-    if (!(step_1_s > 0 && step_2_s > 0)) continue;  // a clock that stood still says nothing
+    if (!(step_1_s > 0 && step_2_s > 0)) continue;  // no information if the clock stood still
     const auto block = [this](int frame) { return pose_blocks_[static_cast<std::size_t>(frame)]; };
     graph_.AddFactor(
         std::make_unique<CameraAccelerationFactor>(step_1_s, step_2_s, acceleration.sigma), nullptr,

@@ -8,7 +8,7 @@
 
 namespace airdos {
 
-/// Who minimizes: our own solver, made for these graphs (structured_minimizer.h), or Ceres.
+/// The minimizer: our own solver, designed for these graphs (structured_minimizer.h), or Ceres.
 enum class BundleSolver { kStructured, kCeres };
 
 struct BundleOptions {

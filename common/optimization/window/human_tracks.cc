@@ -70,7 +70,8 @@ void HumanTracks::AddTo(BundleProblem* problem) const {
       const std::optional<SegmentLengths::Length> length = person.lengths.Find(segment);
       if (!length) continue;
       human.segment_length_m[segment] = length->mean_m;
-      // What the window's frames say about a length, they say to the solver themselves.
+      // The solver gets the window's own measurements of a length directly, so they must not count
+      // here too.
       const std::optional<SegmentLengths::Length> known =
           person.lengths_before_window.Find(segment);
       if (!known) continue;
@@ -90,7 +91,7 @@ void HumanTracks::Absorb(const BundleProblem& problem) {
       const bool is_possible = p_C.allFinite() && p_C.z() > 0 && p_C.z() < 2 * options_.max_depth_m;
       Joint& joint = person.sightings.at(frame.id).at(state.joint);
       joint.is_eliminated = state.is_eliminated || !is_possible;
-      // A joint that lost its measurement starts from it again next time.
+      // A joint whose measurement was rejected starts from that measurement again next time.
       joint.p_C = joint.is_eliminated ? joint.p_C_measured : p_C;
     }
   }

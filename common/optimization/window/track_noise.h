@@ -23,15 +23,16 @@ struct TrackNoiseOptions {
   double largest_chi2 = 25;
 };
 
-/// The process noise of one track, learnt from how it moved: the scatter of its points about the
-/// body's motion, and the accelerations of the body's centre. Both are maxima of the posterior
+/// Estimates the process noise of one track from how it moved: the scatter of its points about the
+/// body's motion, and the accelerations of the body's centre. Both maximise the posterior
 ///
 ///   p(sigma) ~ prod_k N(innovation_k; 0, S_k(sigma)) * N(log sigma; log prior, prior_log_sigma)
 ///
-/// (its mean over a grid of log sigma, rather), so that a short or distant track keeps the prior.
-/// Innovations are those of a filter of constant velocity on the centre of the body points, which
-/// knows what each measurement is worth. Points are taken as measured, from the poses in `problem`:
-/// call it after an adjustment. A person too short to say anything gets the prior.
+/// (more precisely: are its mean over a grid of log sigma), so a short or distant track keeps the
+/// prior. The innovations are those of a constant-velocity filter of the centre of the body points,
+/// which accounts for the covariance of each measurement. Points are taken as measured, from the
+/// poses in `problem`: call it after an adjustment. A track that is too short to be informative
+/// gets the prior.
 MotionNoise EstimateMotionNoise(const TrackNoiseOptions& options, const BundleProblem& problem,
                                 const BundleProblem::Human& human);
 
@@ -41,9 +42,9 @@ struct TrackBreakOptions {
   double largest_chi2 = 30;      ///< of the centre's innovation, 3 degrees of freedom
 };
 
-/// The frames at which a track jumps further than any person can: there two people were mistaken
-/// for each other. From the points as measured and the poses in `problem`, which may be start
-/// values. The filter starts anew at each such frame. Gaps do not count; they say nothing.
+/// The frames at which a track jumps further than any person can: two people were mistaken for each
+/// other there. Uses the points as measured and the poses in `problem`, which may be initial
+/// values. The filter restarts at each such frame. A gap in the track is not evidence of a jump.
 std::set<int> FindTrackBreaks(const TrackBreakOptions& options, const BundleProblem& problem,
                               const BundleProblem::Human& human);
 

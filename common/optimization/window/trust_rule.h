@@ -20,18 +20,18 @@ struct TrustOptions {
   double max_shift_chi2 = 22.5;
 };
 
-/// Whether the pose that people helped to estimate is to be believed over the one from the static
-/// scene. With enough static landmarks wrong motion models make the camera worse (measured), so
-/// people count only where the static scene is weak, and only if they agree among themselves and
-/// with it:
+/// Whether to believe the pose estimated with people rather than the one from the static scene.
+/// With enough static landmarks, wrong motion models make the camera worse (measured), so people
+/// count only where the static scene is weak, and only if they agree among themselves and with it:
 ///
 ///   num_static < min_static
 ///   and  num_motion >= min_motion  and  num_motion_eliminated <= max_share * num_motion
 ///   and  tr P'_t <= max_relative_sigma^2 tr P_t
 ///   and  d^T P^-1 d <= max_shift_chi2
 ///
-/// P and P' are the covariances of the newest pose without and with people, index t their position,
-/// d = Boxminus(with people, without people). Without both covariances people are not believed.
+/// P and P' are the covariances of the newest pose without and with people, index t denotes the
+/// position, and d = Boxminus(with people, without people). Unless both covariances are known,
+/// people are not believed.
 bool TrustsPeople(const TrustOptions& options, int num_static_observations,
                   const BundleSummary& without_people, const BundleSummary& with_people,
                   const Vector6d& shift);
