@@ -17,15 +17,15 @@ struct FeatureExtractorOptions {
   int max_features_per_cell = 5;
 };
 
-/// FAST corners with ORB descriptors (Rublee et al. 2011), at most max_features_per_cell in each
-/// cell of each level so that they spread over the image. Sorted by level, then row-major by cell,
-/// then by response: the order is deterministic.
+/// Extracts FAST corners with ORB descriptors (Rublee et al. 2011), at most max_features_per_cell
+/// per cell of each level so that they cover the whole image. Sorted by level, then cell
+/// (row-major), then response, so the order is deterministic.
 class FeatureExtractor {
  public:
   explicit FeatureExtractor(const FeatureExtractorOptions& options);
 
-  /// `mask` (CV_8UC1, size of the image, or empty): corners on pixels that are not 0 are left out
-  /// and counted in `num_masked`.
+  /// `mask` is CV_8UC1 and has the size of the image, or is empty. Corners on non-zero pixels are
+  /// left out and counted in `num_masked`.
   std::vector<Feature> Extract(const ImagePyramid& pyramid, const cv::Mat& mask,
                                int* num_masked) const;
 

@@ -8,9 +8,9 @@ namespace {
 
 constexpr int kMaxIterations = 10;
 constexpr double kConverged = 1e-8;
-constexpr double kHuberPerson = 1.5;  // sigmas, root mean square over a person's joints
+constexpr double kHuberPerson = 1.5;  // sigmas, RMS over a person's joints
 
-/// Adds the normal equations of r = T_W_C p_C - p_W over the person's joints.
+/// Adds the normal equations of r = T_W_C p_C - p_W for the person's joints.
 void AddPerson(const PersonConstraint& person, const Se3& T_W_C, Matrix6d* H, Vector6d* b) {
   const auto n = static_cast<Eigen::Index>(person.p_W.size());
   const Eigen::Matrix3d R_W_C = T_W_C.rotation.toRotationMatrix();
