@@ -10,8 +10,8 @@
 namespace airdos {
 namespace {
 
-// Adds one row to an optimal assignment of the rows before it by the shortest augmenting path over
-// reduced costs cost - row_potential - column_potential.
+// Extends an optimal assignment of the first rows by one row, along the shortest augmenting path
+// over the reduced costs cost - row_potential - column_potential.
 class HungarianSolver {
  public:
   explicit HungarianSolver(const Eigen::MatrixXd& cost)
@@ -80,8 +80,8 @@ std::vector<std::optional<int>> Assign(const Eigen::MatrixXd& cost, double gate)
   AIRDOS_CHECK(std::isfinite(gate) && gate > 0);
   const Eigen::Index rows = cost.rows();
   const Eigen::Index columns = cost.cols();
-  // Every row may stay alone with one of the columns added on the right and every column with one
-  // of the rows added below; what is added pairs with itself for nothing.
+  // Each row can stay alone by taking one of the columns added on the right, and each column by
+  // taking one of the rows added below; added rows and columns pair with each other at no cost.
   Eigen::MatrixXd square = Eigen::MatrixXd::Zero(rows + columns, rows + columns);
   square.topRightCorner(rows, rows).setConstant(gate / 2);
   square.bottomLeftCorner(columns, columns).setConstant(gate / 2);

@@ -10,12 +10,12 @@
 
 namespace airdos {
 
-// A person in one frame: the left detection, and the right one with its sides agreeing where there
-// is one.
+// A person in one frame: the left detection and, if there is one, the right detection with its
+// sides made to agree.
 struct HumanTracker::Observation {
   PersonDetection detection;
   std::optional<BodyKeypoints> right;
-  SideSwap right_swap = SideSwap::kNone;  // by which the right one was made to agree
+  SideSwap right_swap = SideSwap::kNone;  // applied to the right one to make it agree
 };
 
 HumanTracker::HumanTracker(const HumanTrackerOptions& options, HumanId first_id)
@@ -69,7 +69,7 @@ TrackedFrame HumanTracker::Process(const StereoCamera& camera, const PeopleFrame
 
 void HumanTracker::PredictTracks() {
   std::vector<Eigen::Vector2d> from, guess;
-  std::vector<std::pair<std::size_t, std::size_t>> owner;  // track, joint
+  std::vector<std::pair<std::size_t, std::size_t>> owner;  // (track, joint)
   for (std::size_t track = 0; track < tracks_.size(); ++track) {
     const BodyKeypoints& left = tracks_[track].left();
     for (std::size_t joint = 0; joint < left.size(); ++joint) {
@@ -117,7 +117,7 @@ std::vector<std::optional<int>> HumanTracker::FindTracks(
     const std::vector<Observation>& observations) const {
   std::vector<std::optional<int>> track_of(observations.size());
   std::vector<bool> is_taken(tracks_.size(), false);
-  // Whom both images show comes first: depth makes the choice surer.
+  // People seen in both images come first: depth makes the association more certain.
   Associate(observations, true, options_.gate, &is_taken, &track_of);
   if (options_.use_left_only) {
     Associate(observations, false, options_.left_only_gate, &is_taken, &track_of);
@@ -168,8 +168,9 @@ bool HumanTracker::IsReported(const JointObservations& joints, int num_seen) con
   return num_seen >= options_.min_seen_to_report && NumObserved(joints) >= options_.min_joints;
 }
 
-// One image in sixty or so has the sides of a person exchanged. Where the two detections disagree,
-// one of them is wrong and the track only has to say which; where they agree, hardly ever both are.
+// About one image in sixty has a person's sides exchanged. If the two detections disagree, one of
+// them is wrong and the track only has to tell which; if they agree, it is very rare that both are
+// wrong.
 SideSwap HumanTracker::FindSwap(const Observation& observation, const HumanTrack& track) const {
   const BodyKeypoints& left = observation.detection.left;
   if (observation.right_swap != SideSwap::kNone) {

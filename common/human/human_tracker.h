@@ -32,7 +32,7 @@ struct HumanTrackerOptions {
   HumanTrackOptions track;
 };
 
-/// One stereo frame. Images may be empty: then the keypoints must do alone.
+/// One stereo frame. Images may be empty: then only the keypoints are used.
 struct PeopleFrame {
   cv::Mat left_gray;   ///< CV_8UC1
   cv::Mat left_color;  ///< CV_8UC3, for appearance
@@ -41,22 +41,24 @@ struct PeopleFrame {
   std::vector<BodyKeypoints> right;
 };
 
+/// A person in the current frame, with triangulated joints.
 struct TrackedHuman {
   HumanId id;
   JointObservations joints;
 };
 
+/// The people of one frame.
 struct TrackedFrame {
   std::vector<TrackedHuman> humans;  ///< sorted by id
-  int num_rejected = 0;  ///< detections, left and right, that matched nobody or had no usable shape
+  int num_rejected = 0;  ///< detections, left and right, without a match or usable shape
 };
 
-/// Who is where in each stereo frame: pairs the people of the two images, finds again whom it knows
-/// (optical flow, motion, depth, appearance) and triangulates their joints in the left camera C. It
-/// knows nothing of the camera's pose. The same frames always give the same result.
+/// Tracks people over stereo frames: pairs the detections of the two images, recognises people seen
+/// before (optical flow, motion, depth, appearance) and triangulates their joints in the left
+/// camera C. It does not use the camera's pose. The same frames always give the same result.
 class HumanTracker {
  public:
-  /// People are numbered from `first_id` on.
+  /// People are numbered from `first_id` upwards.
   explicit HumanTracker(const HumanTrackerOptions& options, HumanId first_id = {1});
 
   TrackedFrame Process(const StereoCamera& camera, const PeopleFrame& frame);
@@ -67,7 +69,7 @@ class HumanTracker {
   void PredictTracks();
   std::vector<Observation> Observe(const StereoCamera& camera, const PeopleFrame& frame,
                                    const StereoMatching& matching) const;
-  // For each observation the track it belongs to.
+  // For each observation, the track that it belongs to.
   std::vector<std::optional<int>> FindTracks(const std::vector<Observation>& observations) const;
   void Associate(const std::vector<Observation>& observations, bool is_stereo, double gate,
                  std::vector<bool>* is_track_taken, std::vector<std::optional<int>>* tracks) const;
@@ -85,7 +87,7 @@ class HumanTracker {
   HumanTrackerOptions options_;
   ImageFlow flow_;
   std::vector<HumanTrack> tracks_;                      // sorted by id
-  Eigen::Vector2d shift_px_ = Eigen::Vector2d::Zero();  // of the image since the last frame
+  Eigen::Vector2d shift_px_ = Eigen::Vector2d::Zero();  // shift of the image since the last frame
   HumanId next_id_;
 };
 

@@ -15,14 +15,14 @@ namespace airdos {
 /// One joint in one stereo frame. C is the left camera.
 struct TriangulatedJoint {
   double u_left_px = 0;
-  double v_px = 0;  ///< row in both images, from both detections
+  double v_px = 0;  ///< row in both images, fused from both detections
   double u_right_px = 0;
   double sigma_px = 1;  ///< of each of the three
   double confidence = 0;
   Eigen::Vector3d p_C = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance_C = Eigen::Matrix3d::Zero();  ///< m^2
 };
-/// One person, by Joint.
+/// One person, indexed by Joint.
 using JointObservations = std::array<std::optional<TriangulatedJoint>, kNumJoints>;
 
 struct JointTriangulatorOptions {
@@ -43,30 +43,31 @@ struct JointTriangulatorOptions {
   DisparityRefinerOptions refiner;
 };
 
+/// The images of a stereo frame, as far as available.
 struct StereoImages {
-  cv::Mat left_gray;  ///< CV_8UC1, empty: none
+  cv::Mat left_gray;  ///< CV_8UC1; empty if there is none
   cv::Mat right_gray;
 };
 
-/// The joints in C of a person seen in both images, whose sides agree. Joints are left out whose
-/// rows disagree, whose depth is out of range or far from the person's, or that make a limb
+/// The joints in C of a person seen in both images with agreeing sides. A joint is left out if its
+/// rows disagree, if its depth is out of range or far from the person's, or if it makes a limb
 /// impossible. `disparity_px` is the person's.
 JointObservations TriangulatePerson(const JointTriangulatorOptions& options,
                                     const StereoCamera& camera, const StereoImages& images,
                                     const BodyKeypoints& left, const BodyKeypoints& right,
                                     double disparity_px);
 
-/// The same for a person whom only the left detections have, near an expected disparity: joints
-/// whose disparity the images do not give are left out. `sigma_factor` widens the standard
+/// The same for a person whom only the left image shows, near an expected disparity: joints whose
+/// disparity cannot be measured in the images are left out. `sigma_factor` widens the standard
 /// deviation of the left keypoints.
 JointObservations TriangulateLeftOnly(const JointTriangulatorOptions& options,
                                       const StereoCamera& camera, const StereoImages& images,
                                       const BodyKeypoints& left, double disparity_px,
                                       double sigma_factor);
 
-/// Takes out joints until no limb is longer or shorter than believable, those with the most
-/// impossible limbs first (then the fewest good ones, then the least confident). Returns how many
-/// went.
+/// Removes joints until every limb has a plausible length: first the joints with the most
+/// impossible limbs, then those with the fewest good ones, then the least confident. Returns how
+/// many were removed.
 int RemoveImpossibleLimbs(const JointTriangulatorOptions& options, JointObservations* joints);
 
 int NumObserved(const JointObservations& joints);
