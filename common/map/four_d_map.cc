@@ -5,7 +5,7 @@
 namespace airdos {
 namespace {
 
-// Type 2 is that of MapDelta.
+// Chunk types; type 2 is MapDelta's.
 constexpr std::uint32_t kHeadType = 1;
 constexpr std::uint32_t kEndType = 3;
 

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file that is written from front to end; Close() throws InputError where any of it failed.
+/// A file written sequentially; Close() throws InputError if any write failed.
 class OutputFile {
  public:
   explicit OutputFile(const std::string& path) : path_(path), file_(path, std::ios::binary) {
@@ -35,8 +35,8 @@ class OutputFile {
   std::ofstream file_;
 };
 
-/// Rows of a trajectory in order of image numbers, whose times go forward: whoever reads it takes
-/// for granted that they do. Others are left out, and a comment says how many.
+/// Rows of a trajectory in order of image numbers. Readers take for granted that times increase, so
+/// rows whose time does not are left out, and a comment states how many.
 class TrajectoryRows {
  public:
   void Add(std::int64_t utime, const Se3& pose) {
@@ -201,7 +201,7 @@ std::optional<Se3> TorsoPose(const MapHuman& human) {
   T_W_H.translation = 0.5 * (p_neck + p_hips);
   const Eigen::Vector3d down = p_hips - p_neck;
   const Eigen::Vector3d forward = (p_right - p_left).cross(down);
-  constexpr double kMinAreaM2 = 1e-4;  // hips 1 cm apart below a spine of 1 cm
+  constexpr double kMinAreaM2 = 1e-4;  // hips 1 cm apart, below a spine 1 cm long
   if (!(forward.norm() > kMinAreaM2)) return T_W_H;
   Eigen::Matrix3d R_W_H;
   R_W_H.col(1) = down.normalized();
@@ -247,7 +247,7 @@ std::vector<std::string> ExportMap(const FourDMap& map, const std::string& prefi
                                    const std::string& group, OutputFolder* results) {
   const std::string stage = results->PathOf(".airdos_export");
   std::error_code error;
-  fs::remove_all(stage, error);  // of an export that was killed
+  fs::remove_all(stage, error);  // left by an export that was killed
   fs::create_directories(stage + "/people", error);
   if (error) throw InputError(stage + ": cannot be made: " + error.message());
   std::vector<std::string> paths;

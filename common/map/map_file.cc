@@ -20,7 +20,7 @@ namespace {
 
 constexpr char kMagic[] = "AIRDOSM\n";
 constexpr std::size_t kHeadBytes = 12;
-constexpr std::uint32_t kChunkMagic = 0x4B4E4843;  // "CHNK" little endian
+constexpr std::uint32_t kChunkMagic = 0x4B4E4843;  // "CHNK", little-endian
 constexpr std::size_t kChunkHeadBytes = 12;
 constexpr int kTypeBytes = 4;
 constexpr int kCompressionLevel = 3;
@@ -42,7 +42,7 @@ std::vector<std::uint8_t> Compress(const std::vector<std::uint8_t>& raw) {
   return packed;
 }
 
-/// Everything or nothing: false (errno says why) where not all bytes were taken.
+/// Writes all bytes; false (see errno) if not all of them could be written.
 bool WriteAll(int descriptor, const std::vector<std::uint8_t>& bytes) {
   std::size_t done = 0;
   while (done < bytes.size()) {
@@ -54,7 +54,7 @@ bool WriteAll(int descriptor, const std::vector<std::uint8_t>& bytes) {
   return true;
 }
 
-/// Why there is no whole chunk at `position`, or an empty text and the chunk.
+/// Parses the chunk at `position`. Returns why there is no complete chunk, or an empty text.
 std::string ParseChunk(const std::vector<std::uint8_t>& bytes, std::size_t position,
                        MapChunk* chunk, std::size_t* next) {
   const std::size_t num_left = bytes.size() - position;
