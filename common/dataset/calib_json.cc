@@ -27,7 +27,7 @@ std::pair<std::string, std::string> PlaceOf(const std::string& text, std::size_t
   return {std::to_string(line), "column " + std::to_string(column)};
 }
 
-/// The likely mistake at the byte where JSON ends.
+/// The likely mistake at the byte where parsing stopped.
 std::string ExplainJson(const std::string& text, std::size_t byte) {
   if (byte >= text.size()) return "the file ends before its last brace";
   const std::size_t last =
@@ -96,7 +96,7 @@ std::string Plain(const std::string& key) {
   return plain;
 }
 
-/// The key that another one is written for, or empty.
+/// The key that a misspelt key stands for, or empty.
 std::string MeantBy(const std::string& key) {
   static const std::map<std::string, std::string> kOthers = {{"baseline", "baseline_m"},
                                                              {"baselinemm", "baseline_m"},
@@ -136,7 +136,7 @@ std::string MeantBy(const std::string& key) {
   return other == kOthers.end() ? "" : other->second;
 }
 
-/// "; did you mean 'baseline_m' by 'baseline'?" where a key is there that looks like it.
+/// "; did you mean 'baseline_m' by 'baseline'?" if there is a similar key; otherwise empty.
 std::string DidYouMean(const nlohmann::json& json, const std::string& key) {
   for (const auto& item : json.items()) {
     if (item.key() != key && MeantBy(item.key()) == key) {
@@ -153,7 +153,7 @@ double ReadNumber(const nlohmann::json& json, const std::string& path, const std
                      (meant.empty() ? std::string("; wanted is ") + kCalibJsonForm : meant));
   }
   if (!json[key].is_number()) {
-    // Its value may be nested more deeply than dump() bears.
+    // The value may be nested too deeply for dump().
     throw InputError(path + ": key '" + key + "' with a value of type " + json[key].type_name() +
                      ": must be a number" + (json[key].is_string() ? ", without quotes" : ""));
   }

@@ -16,9 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxEntries = 10000;  // that are looked at in search of data sets
+constexpr std::size_t kMaxEntries = 10000;  // examined when searching for data sets
 
-/// Names of what lies in a folder, in order; nothing where it cannot be read.
+/// Names of a folder's entries, sorted; nothing if it cannot be read.
 std::vector<std::string> Entries(const std::string& folder,
                                  const std::function<bool(const fs::directory_entry&)>& is_wanted) {
   std::vector<std::string> names;
@@ -62,14 +62,14 @@ bool IsDirectory(const std::string& path) {
   return fs::is_directory(path, error);
 }
 
-/// A folder that is read, and what its files end with.
+/// A folder that is read, and the extension of its files.
 struct ReadFolder {
   std::string path;
   std::vector<std::string> endings;
   std::string wanted;
 };
 
-/// Files in it that are not of its kind.
+/// Finds the files in it with another extension.
 void FindInReadFolder(const ReadFolder& folder, std::vector<UnreadFiles>* unread) {
   std::vector<std::string> others;
   std::size_t num_read = 0;
@@ -114,7 +114,7 @@ std::vector<ReadFolder> ReadFolders(const std::string& folder) {
   return folders;
 }
 
-/// Whether the folder holds a file that is read.
+/// Whether the folder has a file with this extension.
 bool HoldsAny(const std::string& folder, const std::string& ending) {
   const std::vector<std::string> files = Files(folder);
   return std::any_of(files.begin(), files.end(),
@@ -200,7 +200,7 @@ std::string ListOf(const std::string& folder, const std::vector<std::string>& na
          "such as " + folder + "/" + names[0];
 }
 
-/// The data sets below a folder, by their names in it.
+/// The data sets below a folder, named relative to it.
 std::vector<std::string> SequencesBelow(const std::string& folder) {
   std::vector<std::string> found;
   for (const std::string& name : Folders(folder)) {
@@ -217,7 +217,7 @@ std::vector<std::string> SequencesBelow(const std::string& folder) {
   return found;
 }
 
-/// Other layouts that users have.
+/// Recognises other layouts that users have.
 std::string ExplainOtherLayout(const std::string& folder) {
   const auto has = [&](const std::string& name) { return IsDirectory(folder + "/" + name); };
   const std::string wanted =
@@ -265,7 +265,7 @@ std::string ExplainOtherLayout(const std::string& folder) {
 std::vector<UnreadFiles> FindUnreadFiles(const std::string& folder) {
   std::vector<UnreadFiles> unread;
   for (const ReadFolder& read : ReadFolders(folder)) FindInReadFolder(read, &unread);
-  if (IsKittiTrackingSequence(folder)) return unread;  // what lies beside is of other sequences
+  if (IsKittiTrackingSequence(folder)) return unread;  // its neighbours are other sequences
   FindOtherFolders(folder, &unread);
   FindOtherFiles(folder, &unread);
   return unread;

@@ -39,7 +39,7 @@ std::vector<std::string> TakeHidden(std::vector<std::string>* names) {
   throw InputError(folder + what);
 }
 
-/// Two series of nearly one size: it is not known which is meant.
+/// Refuses two series of similar size: it is unknown which one is meant.
 void CheckIsOneSeries(const std::string& folder, const std::vector<NameSeries>& series) {
   if (series.size() < 2) return;
   const NameSeries& first = series[0];
@@ -61,7 +61,7 @@ void CheckIsOneSeries(const std::string& folder, const std::vector<NameSeries>& 
   }
 }
 
-/// The names without numbers, each of a form of its own, in order of text.
+/// The names without numbers, each with its own pattern, in lexicographic order.
 NameSeries Unnumbered(const std::vector<std::string>& names) {
   NameSeries series;
   for (const std::string& name : names) series.names.push_back(TakeApart(name));
@@ -81,7 +81,7 @@ void CheckAreUnique(const std::string& folder, const NameSeries& series) {
 
 std::vector<std::uint64_t> WholeNumbers(const std::vector<std::string>& keys, bool are_numbers) {
   constexpr std::size_t kMaxDigits = 19;                      // nanoseconds since 1970
-  constexpr std::uint64_t kMaxNumber = 9000000000000000000U;  // of 64 bits with a sign
+  constexpr std::uint64_t kMaxNumber = 9000000000000000000U;  // fits into 64 bits with sign
   std::vector<std::uint64_t> numbers;
   for (const std::string& key : keys) {
     if (!are_numbers || key.size() > kMaxDigits || key.find('.') != std::string::npos) return {};
@@ -115,11 +115,11 @@ struct Unit {
 };
 constexpr Unit kUnits[] = {{"s", 1}, {"ms", 1e3}, {"us", 1e6}, {"ns", 1e9}};
 
-/// The unit in which whole numbers are times.
+/// The unit in which integer numbers are times.
 const Unit* UnitOf(const std::vector<std::uint64_t>& numbers) {
   constexpr double kYear2000_s = 946684800;
   constexpr double kYear2100_s = 4102444800;
-  constexpr double kMinStep = 5000;  // nobody counts images in such steps
+  constexpr double kMinStep = 5000;  // nobody numbers images in such steps
   const double step = MedianStep(numbers);
   for (const Unit& unit : kUnits) {
     const double first_s = static_cast<double>(numbers[0]) / unit.per_second;
@@ -237,7 +237,7 @@ std::optional<NamedTimes> TimesFromNames(const ImageNames& names) {
     if (unit == nullptr) return std::nullopt;
     times.unit = unit->name;
     for (const std::uint64_t number : names.numbers) {
-      // Exact: nanoseconds since 1970 have more digits than a double.
+      // Exact: nanoseconds since 1970 have more digits than a double can hold.
       const auto value = static_cast<std::int64_t>(number);
       times.utimes.push_back(unit->per_second == 1e9
                                  ? (value + 500) / 1000

@@ -28,7 +28,7 @@ std::optional<KeypointLayout> LayoutOfCount(std::size_t count) {
   return std::nullopt;
 }
 
-/// What rows of this many numbers look like, ": ..." or empty.
+/// What rows with this many numbers look like: ": ...", or empty.
 std::string ExplainCount(std::size_t count) {
   static const std::map<std::size_t, std::string> kKnown = {
       {75, "OpenPose's BODY_25: of its joints, 0-18 without 8 are COCO-18's"},
@@ -64,7 +64,7 @@ std::vector<double> ParseRow(const std::string& path, const TextLine& line) {
   }
 }
 
-/// The number of words in the first line that is none of blanks or a comment.
+/// Number of words in the first line that is neither blank nor a comment.
 std::size_t CountFirstRow(const std::string& path) {
   std::ifstream file(path);
   constexpr std::size_t kMaxLines = 100;  // of comments

@@ -33,7 +33,7 @@ bool AllDigits(const std::string& text) {
                      [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-/// Splits "12.5e-3" into its digits 125 and the number of them before the decimal point (-1).
+/// Splits "12.5e-3" into its digits (125) and the number of digits before the decimal point (-1).
 bool SplitDecimal(std::string text, std::string* digits, int* num_integer_digits) {
   int exponent = 0;
   const std::size_t e = text.find_first_of("eE");
@@ -59,7 +59,7 @@ std::vector<std::uint8_t> ReadBytes(const std::string& path) {
   RequireRegularFile(path);
   std::ifstream file(path, std::ios::binary);
   std::error_code error;
-  const std::uintmax_t size = fs::file_size(path, error);  // fails for what is no plain file
+  const std::uintmax_t size = fs::file_size(path, error);  // fails for anything but a regular file
   if (!file || error) throw InputError(path + ": cannot be read");
   if (size > kMaxFileBytes) {
     throw InputError(path + ": holds " + std::to_string(size) + " bytes, at most " +
@@ -83,7 +83,7 @@ std::pair<int, int> ReadImageSize(const std::string& path) {
   const std::vector<std::uint8_t> bytes = ReadImageFile(path);
   cv::Mat image;
   try {
-    if (ReadImageHeader(bytes.data(), bytes.size()))  // before there is room for what it claims
+    if (ReadImageHeader(bytes.data(), bytes.size()))  // before allocating what it claims
       image = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {
     image.release();

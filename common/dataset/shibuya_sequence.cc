@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kMaxTimeDifferenceUs = 1000;  // times are written with at least ms
+constexpr std::int64_t kMaxTimeDifferenceUs = 1000;  // times have at least ms resolution
 
 StereoCamera PublicCamera() {
   StereoCamera camera;
@@ -30,7 +30,7 @@ StereoCamera PublicCamera() {
   return camera;
 }
 
-/// The camera that was asked for by name, or that of the folder.
+/// The camera requested by name, or otherwise that of the folder.
 void FillCamera(const SequenceOptions& options, FolderSequence::Contents* contents) {
   const std::string first_image = contents->left.folder + "/" + contents->left.files[0];
   const std::pair<int, int> size = ReadImageSize(first_image);
@@ -62,7 +62,7 @@ struct TimedPose {
   Se3 pose;
 };
 
-/// What a line that is not read looks like, "; ..." or empty.
+/// What an unreadable line looks like: "; ...", or empty.
 std::string ExplainPoseLine(const TextLine& line) {
   const std::string separators = ExplainSeparators(line);
   const auto num_commas = std::count(line.words[0].begin(), line.words[0].end(), ',');
@@ -125,7 +125,7 @@ std::vector<TimedPose> ReadPoses(const std::string& path) {
   return rows;
 }
 
-/// Index of the image that was taken at a time, if any.
+/// Index of the image taken at a time, if there is one.
 std::optional<std::size_t> FindImage(const std::vector<std::int64_t>& utimes, std::int64_t utime) {
   const auto it = std::lower_bound(utimes.begin(), utimes.end(), utime - kMaxTimeDifferenceUs);
   if (it == utimes.end() || *it > utime + kMaxTimeDifferenceUs) return std::nullopt;
@@ -193,7 +193,7 @@ void FillGroundTruth(FolderSequence::Contents* contents) {
 bool ContradictsNed(const std::vector<Se3>& T_world_body) {
   if (T_world_body.empty()) return false;
   double sum_of_cosines = 0;
-  Eigen::Vector3d travel_body_m = Eigen::Vector3d::Zero();  // per body axis, without sign
+  Eigen::Vector3d travel_body_m = Eigen::Vector3d::Zero();  // along each body axis, absolute values
   for (std::size_t i = 0; i < T_world_body.size(); ++i) {
     const Se3& pose = T_world_body[i];
     sum_of_cosines += (pose.rotation * Eigen::Vector3d::UnitZ()).z();

@@ -41,7 +41,7 @@ bool HasSequenceLayout(const std::string& folder) { return FindLayout(folder) !=
 
 std::unique_ptr<StereoSequence> OpenStereoSequence(const std::string& given,
                                                    const SequenceOptions& options) {
-  std::string folder = given;  // without slashes at its end, which messages would show
+  std::string folder = given;  // without trailing slashes, which messages would show
   while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
   if (!fs::is_directory(folder)) throw InputError(folder + ": is not a folder");
   const Layout layout = FindLayout(folder);

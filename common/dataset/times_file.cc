@@ -13,7 +13,7 @@
 namespace airdos {
 namespace {
 
-/// A word for a message: not too long, without control characters.
+/// A word for a message: not too long and without control characters.
 std::string Shown(std::string word) {
   constexpr std::size_t kMaxShown = 60;
   if (word.size() > kMaxShown) word = word.substr(0, kMaxShown) + "...";
@@ -43,7 +43,7 @@ bool IsImageName(const std::string& word) {
   return word.find(".png") != std::string::npos || word.find(".jpg") != std::string::npos;
 }
 
-/// What a line looks like that is not one number.
+/// What a line looks like that is not a single number.
 std::string ExplainTimeLine(const TextLine& line) {
   double number = 0;
   if (IsDate(line.words[0])) {
@@ -136,7 +136,7 @@ void CheckOrder(const std::string& path, const std::vector<TimeRow>& rows,
 }  // namespace
 
 std::string OtherTimeUnit(double first, double median_step) {
-  // 1e11 s after 1970 is the year 5138; in ms it is 1973.
+  // 1e11 s after 1970 is the year 5138; as ms it is 1973.
   if (first > 1e17) return "ns";
   if (first > 1e14) return "us";
   if (first > 1e11) return "ms";
