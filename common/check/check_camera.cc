@@ -26,7 +26,7 @@ void CheckBaseline(const StereoCamera& camera, const std::string& where, Finding
   }
 }
 
-/// What a focal length is instead of px, "; ..." or empty.
+/// What a focal length is that is not in px: "; ...", or empty.
 std::string ExplainFocalLength(const StereoCamera& camera) {
   const double as_px = camera.fx_px * camera.width;
   const bool is_normalised = camera.fx_px > 0.3 && camera.fx_px < 4;
@@ -54,14 +54,14 @@ void CheckFocalLength(const StereoCamera& camera, const std::string& where, Find
   }
 }
 
-/// False where the principal point is that of images of another size.
+/// False if the principal point belongs to images of another size.
 bool CheckResolution(const StereoCamera& camera, const std::string& where, FindingList* findings) {
   const std::optional<double> factor = ResolutionFactor(camera);
   if (!factor) return true;
   const std::string what = "the principal point " + Brief(camera.cx_px) + " " +
                            Brief(camera.cy_px) + " is the middle of images " +
                            TimesAsLarge(*factor) + " as these of " + SizeOf(camera);
-  // Between a tenth and a fifth it may be a lens that is badly centred.
+  // Between 10 and 20 %, the lens may just be badly centred.
   if (*factor < 0.8 || *factor > 1.25) {
     findings->Fail("camera.resolution", where,
                    what + ": calibrated for those; divide fx, fy, cx and cy by " + Brief(*factor));
@@ -81,7 +81,7 @@ void CheckPrincipalPoint(const StereoCamera& camera, const std::string& where,
     return;
   }
   if (!CheckResolution(camera, where, findings)) return;
-  constexpr double kFarOff = 0.15;  // of the size
+  constexpr double kFarOff = 0.15;  // relative to the size
   const double off_x = camera.cx_px / camera.width - 0.5;
   const double off_y = camera.cy_px / camera.height - 0.5;
   if (std::abs(off_x) <= kFarOff && std::abs(off_y) <= kFarOff) return;

@@ -21,7 +21,7 @@ const char* NameOf(Severity severity) {
 
 namespace {
 
-/// Findings quote files: no control character of them may reach a terminal.
+/// Findings quote files, and no control character from a file may reach a terminal.
 std::string Printable(std::string text) {
   for (char& c : text) {
     const auto code = static_cast<unsigned char>(c);

@@ -6,7 +6,7 @@
 namespace airdos {
 namespace {
 
-/// Of files that have something in common.
+/// Files that have something in common.
 struct Group {
   int num = 0;
   std::string first;

@@ -9,19 +9,19 @@
 namespace airdos {
 namespace {
 
-constexpr double kMinConfidence = 0.2;  // of joints that say something of a shape
-constexpr double kMargin = 0.1;         // of the image's size: detectors complete what is cut off
-constexpr int kMinPeople = 5;           // fewer shapes say nothing
-constexpr std::size_t kMaxFlags = 3;    // different confidences that may be flags
-constexpr double kMaxCoverage = 0.9;    // of the image by people
-constexpr double kMaxRippled = 0.03;    // of what is marked (RippledShare())
-constexpr int kMinMaskPoints = 50;      // fewer keypoints say nothing of a mask
+constexpr double kMinConfidence = 0.2;  // of joints that count for a person's shape
+constexpr double kMargin = 0.1;       // of the image size: detectors extrapolate beyond the border
+constexpr int kMinPeople = 5;         // fewer shapes are not significant
+constexpr std::size_t kMaxFlags = 3;  // distinct confidences that may be flags
+constexpr double kMaxCoverage = 0.9;  // share of the image covered by people
+constexpr double kMaxRippled = 0.03;  // of the marked pixels (RippledShare())
+constexpr int kMinMaskPoints = 50;    // fewer keypoints cannot test a mask
 
 bool IsSeen(const BodyKeypoint& joint) { return joint.confidence > kMinConfidence; }
 
-/// How badly the lengths of the visible segments keep the proportions of a grown person: median
-/// deviation of log(length / typical length) from its median, so that a joint that is far off says
-/// nothing. About 0.4 in the right order of joints, 1 in a wrong one. Nothing below six segments.
+/// How far the lengths of the visible segments are from an adult's proportions: median deviation of
+/// log(length / typical length) from its median, so that a single misplaced joint has no effect.
+/// About 0.4 for the right joint order, 1 for a wrong one. Nothing for fewer than six segments.
 std::optional<double> Disproportion(const BodyKeypoints& person) {
   std::vector<double> ratios;
   for (const Segment& segment : kSegments) {
@@ -37,8 +37,8 @@ std::optional<double> Disproportion(const BodyKeypoints& person) {
   return Quantile(ratios, 0.5);
 }
 
-/// The neck lies nearer to the middle of the shoulders than half their distance, or than a fifth of
-/// the trunk where the person is seen from the side.
+/// Whether the neck is closer to the middle of the shoulders than half their distance or, for a
+/// person seen from the side, than a fifth of the trunk.
 bool IsNeckBetweenShoulders(const BodyKeypoints& person) {
   const Eigen::Vector2d neck = person[kNeck].uv_px();
   const Eigen::Vector2d right = person[kRightShoulder].uv_px();
@@ -79,7 +79,7 @@ void KeypointCheck::AddPoints(const CheckedPeople& people, FindingList* findings
   }
   if (num_outside > 0 && num_outside_ == 0) first_outside_ = people.where;
   num_outside_ += num_outside;
-  // Some detectors' sums go a little above 1; the readers bound them.
+  // The scores of some detectors slightly exceed 1; the readers clamp them.
   if (worst < 0 || worst > 2) {
     findings->Fail("keypoints.confidence", people.where,
                    "a confidence of " + Brief(worst) + " is not within 0..1" +
@@ -175,7 +175,7 @@ void KeypointCheck::ReportExtent(const std::string& where, FindingList* findings
 }
 
 void KeypointCheck::ReportLayout(const std::string& where, FindingList* findings) const {
-  constexpr double kUsualOutside = 0.01;  // detectors complete people who are cut off
+  constexpr double kUsualOutside = 0.01;  // detectors extrapolate people cut off by the border
   if (num_outside_ > 0) {
     findings->Add(num_outside_ > kUsualOutside * num_points_ ? Severity::kWarning : Severity::kNote,
                   "keypoints.outside", first_outside_,
@@ -189,7 +189,7 @@ void KeypointCheck::ReportLayout(const std::string& where, FindingList* findings
   const std::string shape = "the neck lies between the shoulders in " + Percent(necks) + " of " +
                             std::to_string(num_necks_) + " people, the nose above the hips in " +
                             Percent(heads) + " of " + std::to_string(num_heads_);
-  // Measured medians: 1.4 to 2.8 for COCO-18, 0.30 to 0.35 for the same people in COCO-17's order.
+  // Measured medians: 1.4 to 2.8 for COCO-18; 0.30 to 0.35 for the same people in COCO-17 order.
   constexpr double kClearlyBetter = 0.7;
   if (coco17_ratios_.size() >= kMinPeople && Quantile(coco17_ratios_, 0.5) < kClearlyBetter) {
     findings->Fail("keypoints.layout", where,
@@ -363,7 +363,7 @@ void MaskCheck::ReportFit(const std::string& where, FindingList* findings) const
 void MaskCheck::ReportClasses(const std::string& where, FindingList* findings) const {
   if (num_points_ < kMinMaskPoints) return;
   constexpr double kMaxWithout = 0.25;  // of the image
-  constexpr double kMaxDensity = 0.25;  // of keypoints that were strewn over the image
+  constexpr double kMaxDensity = 0.25;  // density of randomly scattered keypoints
   double area_without = 0;
   std::string names;
   for (const auto& [value, seen] : values_) {

@@ -9,7 +9,7 @@ namespace {
 constexpr double kMinPeriod_s = 0.005;
 constexpr double kMaxPeriod_s = 1;
 
-/// "ms" where the interval would be that of a camera if the times were ms instead of s; or "".
+/// "ms" if the interval would suit a camera if the times were ms instead of s; otherwise "".
 std::string OtherUnit(double period_s) {
   std::string unit;
   for (const char* name : {"ms", "us", "ns"}) {
@@ -35,7 +35,7 @@ void CheckRate(double period_s, const std::string& where, FindingList* findings)
   }
 }
 
-/// Times that repeat or go back.
+/// Checks for times that repeat or go back.
 void CheckOrder(const std::vector<std::int64_t>& utimes, const std::string& where,
                 FindingList* findings) {
   if (utimes.size() > 2 && std::equal(utimes.begin() + 1, utimes.end(), utimes.begin())) {

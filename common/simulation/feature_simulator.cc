@@ -34,7 +34,7 @@ void Check(const SimulationOptions& options) {
   }
 }
 
-/// The measurement without error; nothing where the point is out of view.
+/// The error-free measurement; nothing if the point is out of view.
 std::optional<Eigen::Vector3d> Look(const SimulationOptions& options, const Se3& T_W_C,
                                     const Eigen::Vector3d& p_W) {
   const Eigen::Vector3d p_C = T_W_C.inverse() * p_W;
@@ -93,8 +93,8 @@ class Simulator {
   const SimulationOptions& options_;
   Random random_;
   SimulatedSequence sequence_;
-  std::set<int> in_map_;      // landmarks that were measured before
-  std::vector<int> tracked_;  // those of the last frame
+  std::set<int> in_map_;      // landmarks that have been measured before
+  std::vector<int> tracked_;  // landmarks of the last frame
 };
 
 void Simulator::MoveCamera() {
@@ -126,7 +126,7 @@ void Simulator::MoveCamera() {
   }
 }
 
-/// Enough of them that every frame sees more than it may use.
+/// Enough landmarks that every frame sees more than it may use.
 void Simulator::ScatterLandmarks() {
   const int per_frame = 20 + 12 * options_.static_per_frame;
   for (std::size_t i = 0; i < sequence_.frames.size(); i += 4) {
@@ -146,7 +146,7 @@ MovingObject Simulator::TryObject(const ObjectGroup& group) {
   const Se3& T_W_C = sequence_.frames[sequence_.frames.size() / 2].T_W_C;
   const double z = random_.Uniform(options_.object_nearest_m, options_.object_farthest_m);
   Eigen::Vector3d middle_W;
-  if (options_.path.max_pan_deg > 0) {  // all around what the camera pans over
+  if (options_.path.max_pan_deg > 0) {  // all around the area that the camera pans over
     const double limit_rad = kRadPerDeg * options_.path.pan_limit_deg;
     const double bearing_rad = random_.Uniform(-limit_rad, limit_rad);
     middle_W =
@@ -219,7 +219,7 @@ void Simulator::PlaceObjects() {
 }
 
 void Simulator::ObserveLandmarks(SimulatedFrame* frame) {
-  // Tracked ones first, then those known from before, then new ones.
+  // Tracked landmarks first, then those known from earlier frames, then new ones.
   std::vector<int> order = tracked_;
   for (const int landmark : in_map_) order.push_back(landmark);
   const int num_landmarks = static_cast<int>(sequence_.landmarks_W.size());
