@@ -110,7 +110,7 @@ Frame MakeFrame(const Chart& chart, const cv::Rect& area_px) {
   return frame;
 }
 
-/// The chart's own ticks where it has any (those in the range), else round numbers.
+/// The chart's named ticks within the range, if it has any; otherwise round numbers.
 std::vector<NamedTick> TicksOf(const std::vector<NamedTick>& named, const Range& range) {
   constexpr int kAboutSoMany = 7;
   std::vector<NamedTick> ticks;
@@ -151,7 +151,7 @@ std::vector<const ChartSeries*> NamedSeries(const Chart& chart) {
   return named;
 }
 
-/// In the corner of the chart's area that holds the fewest points.
+/// Drawn in the corner of the chart area with the fewest points.
 void DrawLegend(const Chart& chart, const Frame& frame, cv::Mat* picture) {
   const std::vector<const ChartSeries*> named = NamedSeries(chart);
   int width = 0;

@@ -22,7 +22,7 @@ using nlohmann::json;
 constexpr const char* kFigureKeys[kNumRunFigures] = {"ate_m", "rpe_median_m", "rpe_rmse_m",
                                                      "lost_percent"};
 
-/// For the order: no cap comes last.
+/// Sort key: no cap comes last.
 int CapOrder(const std::optional<int>& cap) {
   return cap.value_or(std::numeric_limits<int>::max());
 }
@@ -50,7 +50,7 @@ double Quantile(const std::vector<double>& sorted, double share) {
   const std::size_t below = static_cast<std::size_t>(place);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);
   const double part = place - static_cast<double>(below);
-  if (part == 0) return sorted[below];  // also keeps infinity out of the product
+  if (part == 0) return sorted[below];  // also avoids a product with infinity
   return (1 - part) * sorted[below] + part * sorted[above];
 }
 
@@ -64,7 +64,7 @@ double Ratio(double on, double mask_only) {
   return on > 0 ? std::numeric_limits<double>::infinity() : 1;
 }
 
-using Pair = std::array<const CappedRun*, 2>;  // mask_only, on
+using Pair = std::array<const CappedRun*, 2>;  // {mask_only, on}
 
 HelpPoint MakePoint(const std::optional<int>& cap, const std::vector<Pair>& pairs) {
   HelpPoint point;

@@ -13,11 +13,11 @@ namespace {
 
 const cv::Scalar kMaskOnlyColor(40, 40, 200);
 const cv::Scalar kOnColor(200, 90, 0);
-constexpr double kDotsBeside = 0.08;  // of the distance between two caps
+constexpr double kDotsBeside = 0.08;  // relative to the distance between two caps
 
 using ToAxis = std::function<double(double)>;
 
-/// The runs as dots, the quartiles thin, the median thick.
+/// The runs as dots, the quartiles as thin lines, the median as a thick one.
 void AddMode(const HelpCurve& curve, RunFigure run_figure, bool is_on, const ToAxis& to_axis,
              Chart* chart) {
   const auto figure = static_cast<std::size_t>(run_figure);
@@ -54,7 +54,7 @@ Chart MakeChart(const HelpCurve& curve, RunFigure figure, const ToAxis& to_axis)
 }
 
 double LogarithmOfMm(double value_m) {
-  constexpr double kLeastMm = 0.01;  // a perfect run has to stay on the paper
+  constexpr double kLeastMm = 0.01;  // keeps a perfect run on the logarithmic axis
   return std::log10(std::max(1000 * value_m, kLeastMm));
 }
 

@@ -16,22 +16,22 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::int64_t kMaxId = std::int64_t{1} << 53;  // of the whole numbers of JSON
-constexpr std::size_t kMaxUnpackedBytes = 256u << 20;   // of some 7,000 frames
+constexpr std::int64_t kMaxId = std::int64_t{1} << 53;  // limit of exact integers in JSON
+constexpr std::size_t kMaxUnpackedBytes = 256u << 20;   // about 7,000 frames
 
 Joints ParseJoints(const json& object) {
   Joints joints;
   for (const auto& [key, place] : object.items()) {
     const int id = std::stoi(key);
     if (id < 0) throw InputError("'" + key + "' is no joint");
-    if (id >= kNumJoints) continue;  // of the face
+    if (id >= kNumJoints) continue;  // a point of the face
     joints[id] = Eigen::Vector3d(place.at(0).get<double>(), place.at(1).get<double>(),
                                  place.at(2).get<double>());
   }
   return joints;
 }
 
-/// A file, unpacked if it is of gzip.
+/// Reads a file, decompressing it if it is gzipped.
 std::string ReadUnpacked(const std::string& path) {
   RequireRegularFile(path);
   const gzFile file = gzopen(path.c_str(), "rb");

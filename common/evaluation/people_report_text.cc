@@ -1,4 +1,4 @@
-// People's errors as text and JSON.
+// Formats people's errors as text and JSON.
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>

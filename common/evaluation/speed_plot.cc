@@ -26,7 +26,7 @@ std::vector<NamedTick> LogarithmicTicks(const std::set<int>& values) {
   return ticks;
 }
 
-// ms against one of the figures of each solve, a line for each solver and kind of start.
+// ms over one of the figures of each solve, with one line per solver and kind of start.
 Chart GrowthChart(const std::vector<SolveTime>& solves, int SolveTime::*figure) {
   std::map<std::string, ChartSeries> series;
   std::set<int> values;
@@ -68,7 +68,7 @@ Chart ProcessChart(const std::vector<ChainSpeed>& chains) {
   }
   for (auto& [name, line] : series) {
     line.name = name;
-    line.color_bgr = kColors[(chart.series.size() / 2) % kColors.size()];  // dots have the same
+    line.color_bgr = kColors[(chart.series.size() / 2) % kColors.size()];  // as its dots
     ChartSeries dots = line;
     dots.name.clear();
     dots.is_dots = true;

@@ -129,7 +129,7 @@ std::string ChainTable(const std::vector<ChainSpeed>& chains) {
   return text;
 }
 
-// Where `solve` was measured, and each solver's figure for that.
+// The conditions under which `solve` was measured, with each solver's figure for them.
 using SolveKey = std::tuple<std::string, int, int, bool>;
 std::map<SolveKey, std::map<std::string, SolveTime>> BySetting(
     const std::vector<SolveTime>& solves) {
@@ -198,7 +198,7 @@ std::vector<SolveTime> ReadSolveTimes(const std::string& path) {
     }
   } catch (const InputError& error) {
     throw InputError(path + ": " + error.what());
-  } catch (const std::exception& error) {  // of the JSON, or of a number in a name
+  } catch (const std::exception& error) {  // from the JSON, or from a number in a name
     throw InputError(path + ": is no report of Google Benchmark: " + error.what());
   }
   return solves;

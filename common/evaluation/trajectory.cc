@@ -9,8 +9,7 @@
 namespace airdos {
 namespace {
 
-/// The pose that is nearest in time (times never decrease); the earlier one of two that are as
-/// near.
+/// The pose nearest in time (times never decrease); the earlier one if two are equally near.
 const TrajectoryPose& Nearest(const std::vector<TrajectoryPose>& poses, double time_s) {
   const auto after =
       std::lower_bound(poses.begin(), poses.end(), time_s,
@@ -61,7 +60,7 @@ MatchedTrajectories Associate(const Trajectory& estimate, const Trajectory& grou
   }
   if (!estimate.has_times) {
     CheckRowsAgree(estimate, ground_truth);
-    max_time_difference_s = 0;  // rows by number: some may have no pose
+    max_time_difference_s = 0;  // by row number: some rows may have no pose
   }
   const bool is_truth_longer = ground_truth.poses.size() > estimate.poses.size();
   const std::vector<TrajectoryPose>& shorter =

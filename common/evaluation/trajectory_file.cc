@@ -17,7 +17,7 @@
 namespace airdos {
 namespace {
 
-/// A row as it was read, before it is known which rows are poses.
+/// A row as read, before it is known which rows are poses.
 struct Row {
   int line = 0;
   double time = 0;
@@ -39,7 +39,7 @@ std::string Shown(const std::string& field) {
   return text + (field.size() > kMostShown ? "..." : "");
 }
 
-/// The number of a field; nothing for those that say that there is none.
+/// The number in a field; nothing if the field denotes a missing value.
 std::optional<double> NumberOf(const std::string& field, const std::string& where) {
   if (IsNoValue(field)) return std::nullopt;
   if (!IsNumber(field)) throw InputError(where + "'" + Shown(field) + "' is not a finite number");
@@ -106,7 +106,7 @@ Row ReadRow(const std::vector<std::string>& fields, const TrajectoryColumns& col
   return row;
 }
 
-/// Words that show at once that a file is something else.
+/// Recognises words that show that the file is something else.
 void CheckIsRows(const std::string& path, const TextLine& first) {
   const std::string& word = first.words[0];
   const std::string where = Where(path, first.number);
@@ -151,7 +151,7 @@ std::vector<Row> ReadRows(const std::string& path, TrajectoryColumns* columns) {
   return rows;
 }
 
-/// Median step between neighbouring rows that both lie off the origin.
+/// Median step between neighbouring rows that are both away from the origin.
 double MedianStep(const std::vector<Row*>& rows) {
   std::vector<double> steps_m;
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -165,10 +165,11 @@ double MedianStep(const std::vector<Row*>& rows) {
   return *middle;
 }
 
-/// Takes the position from rows that lie exactly at the origin while a neighbour does not, by many
-/// steps: that is how some programs write that they lost the camera. A start at the origin is none.
+/// Removes the position from rows exactly at the origin whose neighbour is many steps away: this is
+/// how some programs record that they lost the camera. A trajectory that starts at the origin is
+/// not affected.
 std::size_t MarkLostAtOrigin(std::vector<Row>* rows, int* first_line) {
-  constexpr double kJump = 3;  // median steps
+  constexpr double kJump = 3;  // in median steps
   constexpr double kJumpAtStart = 10;
   std::vector<Row*> posed;
   for (Row& row : *rows) {
@@ -194,8 +195,8 @@ std::size_t MarkLostAtOrigin(std::vector<Row>* rows, int* first_line) {
   return num_lost;
 }
 
-/// Rows without a number at some place are no poses, unless hardly any row has a rotation: then the
-/// file holds positions.
+/// Rows with missing numbers are not poses, unless hardly any row has a rotation: then the file
+/// contains positions only.
 void MarkLost(const TrajectoryColumns& columns, std::vector<Row>* rows, Trajectory* trajectory) {
   const auto num_rotations = static_cast<std::size_t>(
       std::count_if(rows->begin(), rows->end(), [](const Row& row) { return row.has_rotation; }));
@@ -294,7 +295,7 @@ void SetTimes(const std::string& times_path, Trajectory* trajectory) {
   }
   const std::vector<double> times_s = TimesInSeconds(times_path, times, &trajectory->remarks);
   for (TrajectoryPose& pose : trajectory->poses) {
-    pose.time_s = times_s[static_cast<std::size_t>(pose.time_s)];  // the row's number
+    pose.time_s = times_s[static_cast<std::size_t>(pose.time_s)];  // row number
   }
   trajectory->has_times = true;
 }

@@ -15,7 +15,7 @@ const cv::Scalar kTruthColor(170, 170, 170);
 const cv::Scalar kEstimateColor(200, 90, 0);
 const cv::Scalar kErrorColor(40, 40, 200);
 
-/// The two axes of the world that span the plane seen from above: horizontal x vertical = up.
+/// The two world axes that span the plane seen from above: horizontal x vertical = up.
 struct PlaneFromAbove {
   int horizontal = 0;
   int vertical = 2;
@@ -50,7 +50,7 @@ Chart ChartOverTime(const TrajectoryReport& report, const std::string& title,
   chart.starts_at_zero = true;
   ChartSeries series = {"", kErrorColor, 1, {}};
   const std::vector<TrajectoryPose>& truth = report.aligned.ground_truth;
-  const std::size_t offset = truth.size() - values.size();  // a motion is shown at its end
+  const std::size_t offset = truth.size() - values.size();  // a motion is plotted at its end
   for (std::size_t i = 0; i < values.size(); ++i) {
     series.points.emplace_back(truth[i + offset].time_s - truth[0].time_s, values[i]);
   }

@@ -30,7 +30,7 @@ Statistics ErrorAlignedBy(const MatchedTrajectories& matched, Alignment alignmen
   return AlignedError(matched, ComputeAlignment(matched, alignment));
 }
 
-/// Finds out whether one of the files holds positions only.
+/// Determines whether one of the files contains positions only.
 void FindRotations(const Trajectory& estimate, const Trajectory& ground_truth,
                    const MatchedTrajectories& matched, TrajectoryReport* report) {
   const bool has_truth_none =
@@ -69,7 +69,7 @@ std::string Describe(const PoseReading& reading, const TrajectoryReport& report)
   return text;
 }
 
-/// Reads quaternions in the other order where the motions say so; refuses inverted poses.
+/// Reads quaternions in the other order if the motions require it; refuses inverted poses.
 void DecideReading(const Trajectory& estimate, const Trajectory& ground_truth,
                    const EvaluationOptions& options, MatchedTrajectories* matched,
                    TrajectoryReport* report) {
@@ -102,7 +102,7 @@ void DecideReading(const Trajectory& estimate, const Trajectory& ground_truth,
                  "; the figures are of that reading, write TUM files with x y z w"});
 }
 
-/// Axes where rotations tell nothing of them: as given, or as they are.
+/// Sets the axes when rotations do not determine them: as given, or as they are.
 void KeepAxes(const EvaluationOptions& options, const std::string& why, TrajectoryReport* report) {
   report->axes = options.axes.value_or(GroundTruthAxes::Optical());
   report->axes_reason = std::string(options.axes ? "as given; " : "not looked for: ") + why;
@@ -121,7 +121,7 @@ void CheckGivenAxes(const MatchedTrajectories& matched, const AxesDecision& deci
                  ": figures of rotations and relative poses are wrong if the axes are"});
 }
 
-/// Where positions fit, but not the motions in body axes, one file's rotations are wrong.
+/// If the positions fit but the motions in body axes do not, the rotations of one file are wrong.
 bool CheckContradiction(const MatchedTrajectories& matched, const AxesDecision& decision,
                         TrajectoryReport* report) {
   constexpr double kAgree = 0.9;
@@ -148,7 +148,7 @@ void DecideAxes(const MatchedTrajectories& matched, const EvaluationOptions& opt
     CheckGivenAxes(matched, decision, report);
     return;
   }
-  // Axes that are mirrored, or no axes, would spoil the positions that fit.
+  // Mirrored axes, or none, would spoil positions that do fit.
   constexpr double kNothingFits = 0.7;
   if (is_contradiction &&
       (decision.best_agreement < kNothingFits || !decision.axes.is_right_handed())) {
@@ -157,7 +157,7 @@ void DecideAxes(const MatchedTrajectories& matched, const EvaluationOptions& opt
     return;
   }
   if (!decision.is_known) {
-    std::string warnings;  // one of them may be the reason
+    std::string warnings;  // one of these may be the reason
     for (const Remark& remark : report->remarks) {
       if (remark.is_warning) warnings += "; " + remark.text;
     }
@@ -192,8 +192,8 @@ void CountFrames(const Trajectory& estimate, const Trajectory& ground_truth,
       static_cast<double>(report->num_matched) / static_cast<double>(report->num_frames);
 }
 
-/// Frames without a pose, and those whose step is wrong. A pose that a truth of a higher rate has
-/// no partner for is not lost.
+/// Frames without a pose, and those whose step is wrong. A pose without a partner in a ground truth
+/// of higher rate is not lost.
 std::size_t CountLost(const MatchedTrajectories& aligned, const TrajectoryReport& report) {
   std::size_t num_with_pose = report.num_matched;
   if (report.has_truth_higher_rate) {
@@ -203,7 +203,7 @@ std::size_t CountLost(const MatchedTrajectories& aligned, const TrajectoryReport
   if (report.no_rotations_because.empty()) {
     return num_without + CountLostFrames(aligned, report.num_matched);
   }
-  std::size_t num_wrong = 0;  // by the displacements in the aligned world
+  std::size_t num_wrong = 0;  // judged by displacements in the aligned world
   for (std::size_t i = 1; i < aligned.estimate.size(); ++i) {
     const Eigen::Vector3d step =
         aligned.estimate[i].position_m - aligned.estimate[i - 1].position_m;
@@ -236,7 +236,7 @@ void FillRelativeErrors(const MatchedTrajectories& matched, TrajectoryReport* re
   report->segment_drifts = SegmentDrifts(matched);
 }
 
-/// What the figures themselves make doubtful.
+/// Adds remarks on what the figures themselves make doubtful.
 void RemarkOnFigures(const MatchedTrajectories& matched, TrajectoryReport* report) {
   constexpr double kSameUnit = 0.1;
   for (const double factor : {1000.0, 100.0, 0.01, 0.001}) {

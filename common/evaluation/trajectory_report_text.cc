@@ -17,7 +17,7 @@ std::string Format(const char* format, ...) {
   return text;
 }
 
-/// `none_because`: why the figure is not given, empty if it is.
+/// `none_because`: why the figure is missing; empty if it is not.
 std::string Row(const char* name, const char* unit, const Statistics& s,
                 const std::string& none_because = "") {
   if (!none_because.empty()) {

@@ -19,7 +19,7 @@ constexpr double kLeastIntervalS = 0.0005;
 constexpr double kMostIntervalS = 2;
 constexpr double kYear2100S = 4.1e9;
 constexpr double kYear1985S = 4.7e8;
-/// Key frames and positions by satellite come as rarely as this.
+/// Key frames and satellite positions may be this rare.
 constexpr double kSparseIntervalS = 10;
 constexpr double kSparseIntervalSinceEpochS = 400;
 constexpr double kMostRepeated = 0.1;
@@ -107,7 +107,7 @@ void CheckRepetition(const std::string& path, const std::vector<FileTime>& times
        what + "; rows of the same time may be compared with a pose of another time"});
 }
 
-/// Whether the times are 0, 1, 2, ... or go on so from another small whole number.
+/// Whether the times are 0, 1, 2, ... or count on from another small integer.
 bool CountRows(const std::vector<FileTime>& times) {
   const bool starts_small =
       times.size() > 2 && times[0].time < kYear1985S && times[0].time == std::floor(times[0].time);
@@ -144,8 +144,8 @@ std::string RangeOf(const std::vector<TrajectoryPose>& poses) {
                 last_s - first_s);
 }
 
-/// The factor by which the times of `a` overlap those of `b`, if they begin and last alike then; 0
-/// for none.
+/// The factor that makes the times of `a` overlap those of `b` with similar start and duration; 0
+/// if there is none.
 double FactorBetween(const std::vector<TrajectoryPose>& a, const std::vector<TrajectoryPose>& b) {
   const double duration_a_s = a.back().time_s - a.front().time_s;
   const double duration_b_s = b.back().time_s - b.front().time_s;
@@ -190,7 +190,7 @@ double UnitOfTimes(const std::vector<FileTime>& times) {
         unit.seconds * median >= kLeastIntervalS && unit.seconds * median <= kMostIntervalS;
     if (is_before_2100 && (is_interval || times.size() == 1)) return unit.seconds;
   }
-  // Rare poses since 1970 in a small unit.
+  // Infrequent poses, with times since 1970 in a small unit.
   for (const Unit& unit : kUnits) {
     const double most_s = unit.seconds * most;
     if (most_s > kYear1985S && most_s < kYear2100S && unit.seconds * median <= sparse &&
@@ -250,7 +250,7 @@ std::string CompareTimes(const Trajectory& estimate, const Trajectory& ground_tr
 
 std::size_t FramesOfSlowerEstimate(const Trajectory& estimate, const Trajectory& ground_truth) {
   constexpr double kHigherRate = 1.5;
-  constexpr double kRegular = 0.25;  // of the interval
+  constexpr double kRegular = 0.25;  // relative to the interval
   const double interval_s = MedianInterval(estimate.poses);
   const double truth_interval_s = MedianInterval(ground_truth.poses);
   const bool has_fewer_rows = estimate.num_rows() < ground_truth.num_rows();
