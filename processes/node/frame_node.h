@@ -22,23 +22,25 @@
 namespace airdos {
 
 /// A node that works frame by frame. A subclass declares in its constructor which channels make up
-/// a frame (Join, JoinParts), whether it needs the calibration (JoinCalibration) and what it waits
-/// for of its own past (MissingFeedback), and then gets each frame exactly once and in order.
+/// a frame (Join, JoinParts) and whether it needs the calibration (JoinCalibration), and overrides
+/// MissingFeedback if it depends on its own past; it then gets each frame exactly once and in
+/// order.
 template <class Inputs>
 class FrameNode : public Node {
  public:
-  /// A channel has one publisher and LCM keeps its order, so whoever is overtaken is lost. Waiting
-  /// for a swapped message would close a circle with the feedback of the optimizer: a lost message
-  /// of frame k could be given up only when frame k + 1 + window is there, and that frame waits
-  /// for the result of frame k.
+  /// A channel has one publisher and LCM preserves its order, so whatever is overtaken is lost.
+  /// Waiting for reordered messages would form a cycle with the optimizer's feedback: a lost
+  /// message of frame k could be given up only once frame k + 1 + window has arrived, but that
+  /// frame waits for the result of frame k.
   static constexpr int kReorderWindow = 0;
-  /// Frames that may wait at once, and bytes of their messages; the oldest is worked on incomplete
-  /// beyond it (dropped, in realtime pace), so memory stays bounded.
+  /// Limits on pending frames and on the bytes of their messages. Beyond them the oldest frame is
+  /// processed incomplete (dropped, in realtime pace), so memory stays bounded.
   static constexpr std::size_t kMaxPending = 1000;
   static constexpr std::size_t kMaxPendingBytes = 512u << 20;
-  /// So many frames may come before their calibration, which some say once a second.
+  /// This many frames may arrive before their calibration, which some sources publish once a
+  /// second.
   static constexpr int kPatienceForCalibration = 40;
-  /// Sessions whose calibration is kept; beyond it the one that was heard first is forgotten.
+  /// Number of sessions whose calibration is kept; beyond it the oldest one is forgotten.
   static constexpr std::size_t kMaxCalibrations = 100;
 
   using Node::Node;
@@ -80,7 +82,7 @@ class FrameNode : public Node {
     const std::optional<FrameJoiner::Frame> frame = joiner_->Oldest();
     if (!frame) return "";
     std::string text;
-    for (const int input : frame->awaited)  // what was overtaken is lost: nobody waits for it
+    for (const int input : frame->awaited)  // what was overtaken is lost, so nobody waits for it
       text += channels_of_inputs_[static_cast<std::size_t>(input)] + " ";
     if (!HasCalibration(frame->header)) text += std::string(channel::kCalibration) + " ";
     for (const std::string& name : MissingFeedback(frame->header)) text += name + " ";
@@ -93,7 +95,7 @@ class FrameNode : public Node {
   }
 
  protected:
-  /// One message of the channel for each frame.
+  /// Joins a channel with one message per frame.
   template <class Message>
   void Join(const std::string& channel, std::optional<Message> Inputs::*field) {
     const int input = AddInput(channel);
@@ -103,9 +105,9 @@ class FrameNode : public Node {
     });
   }
 
-  /// One or more messages of the channel for each frame, numbered by `part` and `num_parts`; handed
-  /// over in order of `part` once all are there. Only one set is kept: the first part of a later
-  /// frame gives up what is incomplete.
+  /// Joins a channel with one or more messages per frame, numbered by `part` and `num_parts`. They
+  /// are handed over in order of `part` once all have arrived. Only one set is kept: the first part
+  /// of a later frame discards an incomplete set.
   template <class Message>
   void JoinParts(const std::string& channel, std::vector<Message> Inputs::*field) {
     const int input = AddInput(channel);
@@ -123,9 +125,9 @@ class FrameNode : public Node {
   }
 
   /// Frames wait for the calibration of their session; ProcessFrame() then finds it in camera().
-  /// The first one of a session holds for all of it, frames before it included: if it could
-  /// change, which frames it holds for would depend on how fast it travels. Another one is
-  /// rejected.
+  /// The first calibration of a session applies to the whole session, including earlier frames: if
+  /// it could change, the frames it applies to would depend on how fast it travels. A different one
+  /// is rejected.
   void JoinCalibration() {
     needs_calibration_ = true;
     Subscribe<stereo_calibration_t>(channel::kCalibration, [this](stereo_calibration_t&& message) {
@@ -137,16 +139,17 @@ class FrameNode : public Node {
     });
   }
 
-  /// Channels of feedback without which the frame must not start; empty where none is needed.
+  /// Channels of feedback without which the frame must not start; empty if none is needed.
   virtual std::vector<std::string> MissingFeedback(const Header&) const { return {}; }
-  /// A frame of another session than the one before is about to be processed: forget everything.
+  /// Called before a frame of a new session is processed: forget everything.
   virtual void StartSession(const Header& header) = 0;
   /// Publishes exactly one output for the frame, whatever is missing from `inputs`. If it throws,
-  /// what it published is dropped and it is called again, with nothing in `inputs`, as others wait
-  /// for that output; then the exception goes on to whoever called Step() or CompleteOldest().
+  /// whatever it published is dropped and it is called again with empty `inputs`, because others
+  /// wait for that output; then the exception propagates to the caller of Step() or
+  /// CompleteOldest().
   virtual void ProcessFrame(const Header& header, Inputs inputs) = 0;
 
-  /// Numbers that came on a channel that was joined.
+  /// The numbers that arrived on a joined channel.
   const StrayWatch& numbers_of(const std::string& channel) const {
     const auto& names = channels_of_inputs_;
     const auto place = std::find(names.begin(), names.end(), channel);
@@ -154,13 +157,13 @@ class FrameNode : public Node {
     return watches_[static_cast<std::size_t>(place - names.begin())];
   }
 
-  /// Calibration of the frame in work.
+  /// Calibration of the frame being processed.
   const StereoCamera& camera() const { return camera_; }
 
  private:
   struct Slot {
     Inputs inputs;
-    std::size_t num_bytes = 0;  // of the messages that they came in
+    std::size_t num_bytes = 0;  // of the messages that they arrived in
   };
   template <class Message>
   struct PartSet {
@@ -281,7 +284,7 @@ class FrameNode : public Node {
       ++counters(channels_of_inputs_[static_cast<std::size_t>(input)]).num_missing;
     }
     if (!frame.missing.empty() || !HasCalibration(frame.header)) ++mutable_frames().num_incomplete;
-    if (!HasCalibration(frame.header)) {  // without it no pixel has a meaning
+    if (!HasCalibration(frame.header)) {  // without it pixels have no meaning
       WarnOfCalibration(frame.header.session);
       return;
     }
@@ -304,16 +307,16 @@ class FrameNode : public Node {
   }
 
   std::vector<std::string> channels_of_inputs_;
-  std::vector<StrayWatch> watches_;  // of each input
+  std::vector<StrayWatch> watches_;  // one per input
   std::unique_ptr<FrameJoiner> joiner_;
   std::map<FrameJoiner::Key, Slot> inputs_;
   std::size_t num_pending_bytes_ = 0;
   bool needs_calibration_ = false;
-  std::map<std::int64_t, StereoCamera> calibrations_;  // by session
-  std::deque<std::int64_t> calibrated_;                // their sessions, first heard first
+  std::map<std::int64_t, StereoCamera> calibrations_;  // keyed by session
+  std::deque<std::int64_t> calibrated_;                // their sessions, oldest first
   StereoCamera camera_;
   std::optional<std::int64_t> session_;
-  int num_uncalibrated_ = 0;  // frames in a row that came without
+  int num_uncalibrated_ = 0;  // consecutive frames without a calibration
   std::optional<std::int64_t> uncalibrated_said_;
 };
 

@@ -5,7 +5,7 @@
 namespace airdos {
 namespace {
 
-constexpr std::size_t kMaxTextBytes = 500;  // STATUS takes no text that is much longer
+constexpr std::size_t kMaxTextBytes = 500;  // STATUS does not take much longer texts
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void Node::Warn(const std::string& warning) {
   const std::string text = warning.substr(0, kMaxTextBytes);
   warnings_.push_back(text);
   if (warnings_.size() > kMaxWarnings) warnings_.pop_front();
-  // Bounded as well, for owners who never ask.
+  // Bounded as well, for owners that never fetch them.
   if (new_warnings_.size() < kMaxWarnings) new_warnings_.push_back(text);
 }
 

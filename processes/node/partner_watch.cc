@@ -7,8 +7,8 @@
 namespace airdos {
 namespace {
 
-constexpr double kMaxShareWithout = 0.2;  // a camera that loses more is worth a word
-constexpr double kMaxStep = 0.5;          // of the time between two images
+constexpr double kMaxShareWithout = 0.2;  // a camera that loses more deserves a warning
+constexpr double kMaxStep = 0.5;          // relative to the time between two images
 constexpr double kMinOffset_us = 2000;
 
 double Median(std::vector<double>* values) {
@@ -24,7 +24,7 @@ std::string PartnerWatch::Add(const Header& left, const std::optional<Header>& p
                               const StrayWatch& left_numbers, const StrayWatch& numbers) {
   ++num_left_;
   num_with_partner_ += partner ? 1 : 0;
-  // In double, as differences of hostile times overflow.
+  // In double, since differences of hostile times overflow.
   const auto between_us = [](std::int64_t from, std::int64_t to) {
     return std::abs(static_cast<double>(to) - static_cast<double>(from));
   };
@@ -46,7 +46,7 @@ std::string PartnerWatch::JudgeNumbers(std::int64_t session, const StrayWatch& l
                                        const StrayWatch& numbers) {
   const int num_without = num_left_ - num_with_partner_;
   if (num_without < kMaxShareWithout * num_left_) return "";
-  if (may_be_silent_ && !numbers.newest()) return "";  // LcmRunner tells who is silent
+  if (may_be_silent_ && !numbers.newest()) return "";  // LcmRunner reports silent channels
   are_numbers_said_ = true;
   std::ostringstream text;
   text << "no " << what_ << " came for " << num_without << " of " << num_left_

@@ -1,4 +1,4 @@
-// What LogSurvey says of what it saw.
+// The report of LogSurvey.
 #include <algorithm>
 
 #include "common/check/check_stereo.h"
@@ -14,7 +14,7 @@ constexpr std::size_t kMaxSessionsListed = 5;
 
 std::string Megabytes(std::int64_t num_bytes) { return std::to_string(num_bytes >> 20) + " MB"; }
 
-/// "; so 12 of 50 messages", where there is more than one.
+/// "; so 12 of 50 messages", if there is more than one.
 std::string AndMore(std::int64_t num, std::int64_t all) {
   return num == 1 ? "" : "; so " + std::to_string(num) + " of " + std::to_string(all) + " messages";
 }

@@ -43,8 +43,8 @@ void CheckBeforeRun(const std::string& path, const std::string& calibration,
   std::vector<std::string> errors;
   std::vector<std::string> warnings;
   for (const Finding& finding : findings.findings()) {
-    // What was assumed the source says itself, checked or not. And of a log that is damaged every
-    // event that is whole is worth playing: a recording that a power cut ended, say.
+    // Assumptions are reported by the source itself, checked or not. And in a damaged log every
+    // intact event is worth playing, for example in a recording that ended with a power cut.
     const bool is_known = finding.kind == kAssumedKind;
     const bool is_survived = finding.kind == kLogDamagedKind;
     if (finding.severity == Severity::kError && !is_survived) {

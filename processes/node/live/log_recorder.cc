@@ -24,7 +24,7 @@ constexpr char kProcessName[] = "airdos-record";
 constexpr int kPollTimeout_ms = 50;
 constexpr double kStatusPeriod_s = 1.0;
 
-// The writer replaces what is there.
+// The writer replaces an existing file.
 const std::string& CheckedPath(const LogRecorderOptions& options) {
   if (!options.replaces_file && StampOf(options.path)) {
     throw InputError(options.path + ": is there already; --force replaces it");
@@ -90,7 +90,7 @@ void LogRecorder::Take(const std::string& channel, const void* data, std::size_t
 ChannelCounters& LogRecorder::CountersOf(const std::string& channel) {
   const auto known = channels_.find(channel);
   if (known != channels_.end()) return known->second;
-  // The channels that are counted for gaps are never among the others, whatever came first.
+  // Channels that are counted for gaps always get their own entry, whatever came first.
   return channels_[channels_.size() < kMaxChannels || CarriesEveryImage(channel) ? channel
                                                                                  : kOtherChannels];
 }
@@ -114,11 +114,11 @@ void LogRecorder::CountGap(const std::string& channel, const void* data, std::si
   Header& newest = entry->second;
   if (!is_first && newest.session == header->session) {
     if (header->seq <= newest.seq) return;
-    // Unsigned, because the difference of hostile numbers may not fit.
+    // Unsigned, because the difference of hostile numbers may overflow.
     const std::uint64_t num_missing =
         static_cast<std::uint64_t>(header->seq) - static_cast<std::uint64_t>(newest.seq) - 1;
     if (num_missing > static_cast<std::uint64_t>(FrameJoiner::kMaxAhead))
-      return;  // the processes do not believe it either
+      return;  // the processes reject it as well
     channels_[channel].num_missing += static_cast<std::int64_t>(num_missing);
   }
   newest = *header;
@@ -162,7 +162,7 @@ int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, s
       }
       transport->Poll(kPollTimeout_ms);
     }
-    // What arrived before the signal is recorded as well.
+    // What arrived before the signal is still recorded.
     while (transport->Poll(0)) {
     }
     recorder.Sync();

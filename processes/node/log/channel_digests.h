@@ -10,9 +10,9 @@
 
 namespace airdos {
 
-/// Digests of what each channel carried, independent of how the channels interleaved: per channel,
-/// the SHA-256 over the SHA-256 (hexadecimal) of each payload, in order of session (of appearance),
-/// seq and arrival.
+/// Digests of what each channel carried, regardless of how the channels interleaved: per channel,
+/// the SHA-256 over the SHA-256 (hexadecimal) of each payload, ordered by session (in order of
+/// appearance), seq and arrival.
 class ChannelDigests {
  public:
   struct Entry {

@@ -21,7 +21,7 @@ const std::vector<std::string>& OutputChannels() {
   return channels;
 }
 
-/// Letters and digits alone, as capitals.
+/// Letters and digits only, in upper case.
 std::string Bare(const std::string& name) {
   std::string bare;
   for (const char c : name) {

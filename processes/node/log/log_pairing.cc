@@ -8,14 +8,14 @@
 namespace airdos {
 namespace {
 
-constexpr std::size_t kNewestOfCutLog = 16;  // frames that may wait for their partners
-constexpr double kMostOf = 0.8;              // a cause must explain so many
+constexpr std::size_t kNewestOfCutLog = 16;  // frames that may still wait for their partners
+constexpr double kMostOf = 0.8;              // a cause must explain this share
 
 std::string OfAll(std::size_t count, std::size_t all) {
   return std::to_string(count) + " of " + std::to_string(all);
 }
 
-/// " + 1000", " - 3".
+/// A difference as " + 1000" or " - 3".
 std::string Signed(std::int64_t difference) {
   return (difference < 0 ? " - " : " + ") + std::to_string(std::abs(difference));
 }
@@ -33,8 +33,8 @@ std::string Range(const std::vector<Header>& headers) {
   return std::to_string(min->seq) + " to " + std::to_string(max->seq);
 }
 
-/// A difference that most of `num` comparisons gave, if there is one. Differences wrap around, as
-/// hostile numbers would overflow.
+/// The difference found in most of `num` comparisons, if there is one. Differences wrap around,
+/// because hostile numbers would overflow.
 std::optional<std::int64_t> Commonest(const std::map<std::int64_t, std::size_t>& counts,
                                       std::size_t num) {
   const auto best =
@@ -55,17 +55,17 @@ bool IsThousandfold(std::int64_t a, std::int64_t b) {
   return std::abs(ratio - 1e3) < 1 || std::abs(ratio - 1e-3) < 1e-6;
 }
 
-/// Compares the numbers of messages of one capture time.
+/// Compares the numbers of messages with the same capture time.
 struct ByTime {
   std::size_t num_matched = 0;
-  std::optional<std::int64_t> difference;  // of their numbers
+  std::optional<std::int64_t> difference;  // between their numbers
 };
 
 ByTime JoinByTime(const std::vector<Header>& lefts, const std::vector<Header>& others) {
   std::map<std::int64_t, std::int64_t> seq_at;
   for (const Header& left : lefts) seq_at.emplace(left.utime, left.seq);
   ByTime result;
-  if (2 * seq_at.size() < lefts.size()) return result;  // times that repeat tell nothing
+  if (2 * seq_at.size() < lefts.size()) return result;  // repeated times are not informative
   std::map<std::int64_t, std::size_t> counts;
   for (const Header& other : others) {
     const auto left = seq_at.find(other.utime);
@@ -171,7 +171,8 @@ void LogPairing::CheckPartners(const std::string& channel, const std::map<Key, H
   const bool is_truth = channel == channel::kGroundTruth;
   if (num_alone > 0) {
     const bool has_none = num_alone == lefts.size();
-    // Without a right image there is no measurement; frames without the others do with less.
+    // Without a right image there is no measurement; without the other inputs a frame has just
+    // less.
     const bool is_error =
         !is_truth &&
         (has_none || (channel == channel::kCameraRight && 2 * num_alone > lefts.size()));

@@ -10,7 +10,7 @@
 namespace airdos {
 namespace {
 
-constexpr std::size_t kSessionsRemembered = 8;  // the last of one may come among those of the next
+constexpr std::size_t kSessionsRemembered = 8;  // one's last message may be in the next one
 
 // A frame of another session is newer, whatever its number.
 bool IsNewer(const Header& a, const Header& b) { return a.session != b.session || a.seq > b.seq; }
@@ -64,13 +64,13 @@ std::optional<LogSource::Input> LogSource::ReadInput() {
 }
 
 bool LogSource::IsCredible(const Header& header) const {
-  if (header.seq < 0) return false;  // receivers would not take it
+  if (header.seq < 0) return false;  // receivers would reject it
   for (const Header& newest : newest_) {
     if (newest.session == header.session && header.seq - 1 <= newest.seq) return true;
   }
   if (ahead_.empty()) return true;
   return std::any_of(ahead_.begin(), ahead_.end(), [&header](const Input& later) {
-    // Neither negative, so the difference fits.
+    // Neither is negative, so the difference does not overflow.
     return later.header.session == header.session && later.header.seq >= header.seq &&
            later.header.seq - header.seq <= FrameJoiner::kMaxAhead;
   });

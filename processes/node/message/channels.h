@@ -3,7 +3,7 @@
 
 namespace airdos::channel {
 
-// One type and one publisher each: lcmtypes/README.md.
+// Each channel has one type and one publisher: lcmtypes/README.md.
 inline constexpr char kCameraLeft[] = "CAMERA_LEFT";
 inline constexpr char kCameraRight[] = "CAMERA_RIGHT";
 inline constexpr char kCalibration[] = "CALIBRATION";

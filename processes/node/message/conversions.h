@@ -7,8 +7,8 @@
 
 namespace airdos {
 
-// The one place where messages and the types of common/ are converted: quaternions are w, x, y, z
-// in messages.
+// All conversions between messages and the types of common/ are in this file: messages have
+// quaternions in the order w, x, y, z.
 
 StereoCamera ToStereoCamera(const stereo_calibration_t& message);
 void FromStereoCamera(const StereoCamera& camera, stereo_calibration_t* message);
