@@ -52,7 +52,7 @@ static_features_t ToMessage(const Header& header, std::int64_t odometry_start_se
   return message;
 }
 
-/// The frame has no pose, and nothing was looked at.
+/// The output for a frame without a pose, in which nothing was examined.
 static_features_t WithoutPose(const Header& header, std::int64_t odometry_start_seq) {
   static_features_t message = ToMessage(header, odometry_start_seq, OdometryFrame());
   message.tracking_state = static_features_t::STATE_INVALID;
@@ -98,8 +98,8 @@ std::string FrontendNode::ReceiveUpdate(map_update_t&& message) {
   const std::int64_t seq = message.seq;
   const auto num_parts = static_cast<std::size_t>(message.num_parts);
   const bool is_expected = std::find(published_.begin(), published_.end(), seq) != published_.end();
-  // The optimizer gave up a frame that is still to be published, so what that frame waits for got
-  // lost. Only the next ones: no single wrong number may end the waiting.
+  // The optimizer has given up a frame that is yet to be published, so whatever that frame waits
+  // for was lost. Only for the next few frames: a single wrong number must not end the waiting.
   const std::int64_t ahead = published_.empty() ? 0 : seq - published_.back();
   if (ahead > 0 && ahead <= options_.feedback_lag) is_feedback_silent_ = true;
   if (!is_expected) return "too late, or of a frame that was not published";
@@ -127,7 +127,7 @@ std::vector<std::string> FrontendNode::MissingFeedback(const Header& header) con
 }
 
 void FrontendNode::StartSession(const Header& header) {
-  constexpr std::int64_t kMostPerFrame = 1000000;  // more than an image has corners
+  constexpr std::int64_t kMostPerFrame = 1000000;  // an image has fewer corners
   odometry_ = std::make_unique<VisualOdometry>(
       options_.odometry, LandmarkId{FirstRunningNumber(header.seq, kMostPerFrame)});
   first_ = header;
@@ -222,12 +222,13 @@ std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
   if (inputs.right) right = DecodeGray(*inputs.right, &reason_right);
   const bool has_right = inputs.right && Fits(right, channel::kCameraRight, reason_right);
   if (!Fits(left, channel::kCameraLeft, reason_left)) return std::nullopt;
-  // Images of other times are no pair, rectified or not; that is said of their numbers.
+  // Images taken at different times are no stereo pair, rectified or not; WatchNumbers() warns of
+  // them.
   constexpr std::int64_t kMaxApart_us = 20000;
   const bool is_pair = has_right && inputs.right->utime <= inputs.left->utime + kMaxApart_us &&
                        inputs.left->utime <= inputs.right->utime + kMaxApart_us;
   if (is_pair) watches_.input.AddPair(*left, *right);
-  // A blank right image holds no corner: the landmarks are tracked in the left one alone.
+  // A blank right image has no corners, so landmarks are tracked in the left image only.
   if (!has_right) right = cv::Mat::zeros(left->size(), CV_8UC1);
   return StereoImagePair{FrameId{header.seq},
                          static_cast<double>(header.utime - first_.utime) * 1e-6,
@@ -267,11 +268,13 @@ void FrontendNode::ProcessFrame(const Header& header, FrontendInputs inputs) {
   ApplyUpdates();
   WatchNumbers(inputs);
   std::optional<StereoImagePair> images = Images(header, inputs);
-  // Its time is that of another image: of a camera that counts otherwise, say.
+  // Otherwise its time belongs to another image, for example of a camera with a different
+  // numbering.
   const bool is_new = images || (newest_utime_ && header.utime > *newest_utime_);
   static_features_t message = is_new ? Track(header, images) : WithoutPose(header, first_.seq);
   if (!Validate(message).empty()) {
-    // Blind for so long that the motion before leads beyond all bounds: begin as after a restart.
+    // After too many frames without images, the predicted pose exceeds all bounds: start afresh, as
+    // after a restart.
     StartSession(header);
     if (images) images->time_s = 0;
     message = Track(header, images);

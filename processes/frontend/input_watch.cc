@@ -9,28 +9,28 @@
 namespace airdos {
 namespace {
 
-// To measure a pair takes about half as long as to track a frame.
+// Measuring a pair takes about half as long as tracking a frame.
 constexpr int kMaxCorners = 300;
-constexpr int kFirstMeasured = 3;  // pairs of the first ten, if they have corners
+constexpr int kFirstMeasured = 3;  // of the first ten pairs, if they have corners
 constexpr int kMeasureEvery = 100;
 
-constexpr double kNotRectified_px = 1.5;  // the front end searches a corner so near to its row
+constexpr double kNotRectified_px = 1.5;  // the frontend's search range for a corner around its row
 constexpr double kBadlyRectified_px = 0.6;
-constexpr double kMinExchanged = 0.7;  // share of the disparities that are negative
+constexpr double kMinExchanged = 0.7;  // share of negative disparities
 
 constexpr double kMaxCoverage = 0.9;
 constexpr int kMinJoints = 50;
-constexpr double kMinMarked = 0.1;  // share of the joints that lie on masks
+constexpr double kMinMarked = 0.1;  // share of joints inside masks
 constexpr double kMinJointConfidence = 0.2;
 
-// Intervals that cameras have, and those that most have.
+// Periods that cameras can have, and those that most of them have.
 constexpr double kMinPeriod_s = 0.002;
 constexpr double kMaxPeriod_s = 2;
 constexpr double kMinUsualPeriod_s = 0.005;
 constexpr double kMaxUsualPeriod_s = 1;
 
-/// Two of the three pairs measured last must agree: one may have shown nothing but waves, or been
-/// taken before the camera moved.
+/// Two of the last three measured pairs must agree: a single one may show nothing but water, or
+/// date from before the camera moved.
 double MiddleOfLastThree(const std::vector<double>& values) {
   return Quantile({values.end() - kFirstMeasured, values.end()}, 0.5);
 }

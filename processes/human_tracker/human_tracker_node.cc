@@ -61,7 +61,7 @@ HumanTrackerNode::HumanTrackerNode(const HumanTrackerOptions& options)
 
 void HumanTrackerNode::StartSession(const Header& header) {
   watches_ = Watches();
-  constexpr std::int64_t kMostPerFrame = 1000;  // Validate() lets 200 people an image pass
+  constexpr std::int64_t kMostPerFrame = 1000;  // Validate() accepts up to 200 people per image
   tracker_ = std::make_unique<HumanTracker>(options_,
                                             HumanId{FirstRunningNumber(header.seq, kMostPerFrame)});
 }

@@ -15,6 +15,7 @@
 
 namespace airdos {
 
+/// The messages of one frame.
 struct HumanTrackerInputs {
   std::optional<image_t> left_image;
   std::optional<image_t> right_image;
@@ -23,9 +24,9 @@ struct HumanTrackerInputs {
 };
 
 /// CAMERA_LEFT, CAMERA_RIGHT, PERSON_KEYPOINTS_LEFT, PERSON_KEYPOINTS_RIGHT -> HUMAN_OBSERVATIONS:
-/// one message a frame, empty if nobody was found. An image that is missing, does not decode or has
-/// another size than the calibration says is done without; so are keypoints. It watches the
-/// keypoints and warns of what is doubtful.
+/// one message per frame, empty if nobody was found. Works without an image that is missing, cannot
+/// be decoded or differs in size from the calibration, and without missing keypoints. Watches the
+/// keypoints and warns of anything doubtful.
 class HumanTrackerNode : public FrameNode<HumanTrackerInputs> {
  public:
   explicit HumanTrackerNode(const HumanTrackerOptions& options);
@@ -35,7 +36,7 @@ class HumanTrackerNode : public FrameNode<HumanTrackerInputs> {
   void ProcessFrame(const Header& header, HumanTrackerInputs inputs) override;
 
  private:
-  /// What is watched of one session.
+  /// What is watched during one session.
   struct Watches {
     PartnerWatch left{channel::kPersonKeypointsLeft, "keypoints of the left image", true};
     PartnerWatch right{channel::kPersonKeypointsRight, "keypoints of the right image", true};

@@ -27,14 +27,14 @@ std::optional<UnfinishedMap> FindUnfinishedMap(const std::string& directory, con
     if (map.is_closed || map.session != header.session || !is_earlier) return std::nullopt;
     found.num_bytes = summary.num_bytes_used;
     found.num_live = CountLive(map);
-  } catch (const InputError&) {  // none, or none that can be read
+  } catch (const InputError&) {  // missing or unreadable
     return std::nullopt;
   }
   try {
     MapFileSummary summary;
     FourDMap notes = ReadFourDMap(directory + "/" + kNotesName, &summary);
     if (notes.session == header.session) found.notes = std::move(notes);
-  } catch (const InputError&) {  // then they are lost
+  } catch (const InputError&) {  // then the notes are lost
   }
   return found;
 }
@@ -67,7 +67,7 @@ bool IsUnfinished(const std::string& path) {
   try {
     MapFileSummary summary;
     return !ReadFourDMap(path, &summary).is_closed;
-  } catch (const InputError&) {  // no map at all: it may be worth something to somebody
+  } catch (const InputError&) {  // not a map, so it may matter to somebody
     return true;
   }
 }
@@ -79,7 +79,7 @@ void SayWhatIsReplaced(const std::string& path) {
     const FourDMap map = ReadFourDMap(path, &summary);
     Say(path + ": replaces the map of session " + std::to_string(map.session) + ", " +
         std::to_string(map.frames.size()) + " frames");
-  } catch (const InputError&) {  // no map: it is named if it is in the way
+  } catch (const InputError&) {  // not a map: reported elsewhere if it is in the way
   }
 }
 
@@ -95,7 +95,7 @@ void KeepMap(const std::string& path) {
 }
 
 void KeepMapsOfACutRun(const std::string& directory) {
-  int num_sessions = 0;  // of that run, as far as it came
+  int num_sessions = 0;  // of that run, as far as it got
   for (int number = 1; fs::exists(SessionDirectory(directory, number)); ++number) {
     if (IsUnfinished(SessionDirectory(directory, number) + "/" + kMapName)) num_sessions = number;
   }

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr char kGroup[] = "run";  // in the folder's list
 constexpr int kGroundTruthPerChunk = 10000;
-constexpr std::size_t kLargeChunkBytes = 8u << 20;  // then it does not wait for its last frame
+constexpr std::size_t kLargeChunkBytes = 8u << 20;  // such a chunk is closed early
 
 MapHuman ToMapHuman(const human_state_t& message) {
   MapHuman human;
@@ -152,7 +152,7 @@ void MapRecorderNode::OpenMap(std::int64_t num_bytes) {
 }
 
 bool MapRecorderNode::Resume(const Header& header) {
-  // A session that was not the first one lies in a folder of its own.
+  // Each session after the first has its own folder.
   int number = 1;
   std::string directory = SessionDirectory(options_.directory, number);
   std::optional<UnfinishedMap> found = FindUnfinishedMap(directory, header);
@@ -199,12 +199,12 @@ void MapRecorderNode::NoteGroundTruth() {
     }
     if (!changes.empty()) notes_->Append(changes.ToChunk());
     notes_->Append(EndChunk(camera, axes));
-  } catch (const InputError&) {  // the map itself will say that the disk is full
+  } catch (const InputError&) {  // writing the map itself will report a full disk
   }
 }
 
 void MapRecorderNode::ProcessFrame(const Header& header, MapRecorderInputs inputs) {
-  if (file_ == nullptr) return;  // the disk failed
+  if (file_ == nullptr) return;  // after a disk failure
   const bool has_pose = inputs.state && inputs.state->status != state_estimate_t::STATUS_INVALID;
   if (has_pose) {
     changes_.SetFrame({header.seq}, ToMapFrame(*inputs.state));
@@ -233,7 +233,7 @@ void MapRecorderNode::WatchTime(const Header& header) {
        "); the map has such poses, the trajectory files leave them out");
 }
 
-// The newest one stays: the end of the map needs its axes.
+// The newest one is kept: the end of the map needs its axes.
 void MapRecorderNode::TakeOldGroundTruth(std::int64_t seq) {
   const auto poses = ground_truth_.find(session_);
   if (poses == ground_truth_.end()) return;
@@ -247,9 +247,9 @@ void MapRecorderNode::TakeOldGroundTruth(std::int64_t seq) {
 std::string MapRecorderNode::AddCalibration(const stereo_calibration_t& message) {
   std::map<std::int64_t, StereoCamera>& cameras = cameras_[message.session];
   cameras[message.seq] = ToStereoCamera(message);
-  cameras.erase(std::next(cameras.begin()), cameras.end());  // the earliest is enough
+  cameras.erase(std::next(cameras.begin()), cameras.end());  // only the earliest is needed
   if (cameras_.size() > kMaxSessionsAhead) {
-    const auto oldest = cameras_.begin();  // sources choose growing numbers
+    const auto oldest = cameras_.begin();  // sources choose increasing numbers
     cameras_.erase(oldest->first == session_ ? std::next(oldest) : oldest);
   }
   return "";
@@ -286,7 +286,7 @@ void MapRecorderNode::Append(const MapChunk& chunk) {
     file_->Append(chunk);
   } catch (const InputError& error) {
     failure_ = error.what();
-    file_.reset();  // said once: nothing more is written
+    file_.reset();  // reported once: nothing more is written
     throw;
   }
 }

@@ -108,10 +108,10 @@ std::int8_t ToStatus(FrameEstimate::Status status) {
   return state_estimate_t::STATUS_INVALID;
 }
 
-/// A system of hardly any information may come out of its inversion with variances below zero, or
-/// beyond what receivers take: then it says that nothing is known.
+/// Inverting a system with hardly any information may yield variances that are negative or beyond
+/// what receivers accept; such a covariance is replaced by one that states that nothing is known.
 Eigen::Matrix<double, 6, 6> Published(const Eigen::Matrix<double, 6, 6>& covariance) {
-  constexpr double kMaxVariance = 1e12;  // as Validate() has it
+  constexpr double kMaxVariance = 1e12;  // as in Validate()
   constexpr double kUnknownVariance = 1e6;
   const bool is_sane = covariance.allFinite() && covariance.diagonal().minCoeff() >= 0 &&
                        covariance.cwiseAbs().maxCoeff() <= kMaxVariance;
@@ -153,7 +153,7 @@ human_state_t ToHumanState(const HumanState& state) {
   return message;
 }
 
-/// Fills messages one after the other, each up to the size that may travel.
+/// Fills one message after another, each up to the size that can travel.
 class PartWriter {
  public:
   explicit PartWriter(const Header& header) : header_(header) { StartPart(); }

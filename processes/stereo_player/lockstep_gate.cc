@@ -25,7 +25,7 @@ LockstepGate::LockstepGate(const LockstepGateOptions& options, double now_s)
 }
 
 void LockstepGate::NoteNewcomer(const process_status_t& status) {
-  constexpr std::size_t kMostProcesses = 64;  // anybody may say anything
+  constexpr std::size_t kMostProcesses = 64;  // anybody may publish anything
   if (pids_.size() >= kMostProcesses && pids_.count(status.process) == 0) return;
   std::int64_t& pid = pids_[status.process];
   has_newcomer_ = has_newcomer_ || (pid != status.pid && !published_.empty());
@@ -69,8 +69,8 @@ void LockstepGate::OnFrameDone(const frame_done_t& done, double now_s) {
   if (it == processes_.end()) return;
   Process& process = it->second;
   process.heard_s = now_s;
-  // It works in order, so what was published before is over too: lost on the way to it, or its
-  // FRAME_DONE was lost on the way here.
+  // The process works in order, so earlier frames are done as well: either they, or their
+  // FRAME_DONE, were lost.
   for (std::size_t newer = 0; newer < process.num_in_flight; ++newer) {
     const Published& frame = published_[published_.size() - 1 - newer];
     if (frame.session != done.session || frame.seq != done.seq) continue;

@@ -27,7 +27,7 @@ int Play(const airdos::PlayerOptions& options, const airdos::CommonArguments& co
   cv::setNumThreads(1);
   const airdos::OutputFiles outputs({options.write_log}, {{options.data}, common.force});
   const std::int64_t session = options.session.value_or(airdos::WallClock_us());
-  // Opened before anything is said, so that a wrong path is.
+  // Opened before anything is published, so that a wrong path is reported first.
   std::unique_ptr<airdos::FrameSource> first = airdos::OpenPlayerSource(options, session);
   if (!options.write_log.empty()) {
     Check(options);

@@ -20,12 +20,12 @@ namespace {
 
 constexpr int kPollTimeout_ms = 50;
 constexpr int kMaxJumpsSaid = 10;
-constexpr int kMaxDrained = 1000;  // messages that are taken in at once
-/// Messages go out no faster than this: a burst of several frames overflows the receivers' socket
-/// buffers (200 kB on a stock kernel) before their threads run.
+constexpr int kMaxDrained = 1000;  // messages received in one go
+/// Limit of the sending rate: a burst of several frames overflows the receivers' socket buffers
+/// (200 kB with a stock kernel) before their threads run.
 constexpr double kMaxBytesPerSecond = 30e6;
 
-// The frame that the messages make up: that of the newest of them. Sources give no message without
+// The frame that the messages belong to: that of the newest one. Sources return no messages without
 // a header.
 Header HeaderOfFrame(const std::vector<Envelope>& messages) {
   Header newest;
@@ -63,7 +63,8 @@ std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std:
                                            options.image, options.check.calibration);
   }
   auto log = std::make_unique<LogSource>(options.data, options.first, last);
-  // Unless asked for, a log is played as it is: its sessions are part of what others made of it.
+  // Unless requested otherwise, a log is played unchanged: its sessions also occur in recorded
+  // outputs.
   if (options.session || options.num_loops != 1) log->RenumberSessions(session);
   return log;
 }
@@ -140,7 +141,7 @@ void PlayerLoop::WaitUntilMayPublish() {
 
 void PlayerLoop::WaitForTime(const Header& header) {
   if (!pace_) pace_ = {SteadyClock_s(), header.utime};
-  // Floating point: the difference of two damaged times may not fit into an integer.
+  // In floating point: the difference of two damaged times may not fit into an integer.
   double gap_s = 1e-6 * (static_cast<double>(header.utime) - static_cast<double>(pace_->second));
   if (gap_s < 0 || gap_s > kMaxGap_s) {
     if (++num_jumps_ <= kMaxJumpsSaid) {

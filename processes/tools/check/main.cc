@@ -1,4 +1,4 @@
-// airdos-check: whether a folder or a log can be used, before it is.
+// airdos-check: checks whether a folder or a log can be used, before using it.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>

@@ -17,10 +17,10 @@ namespace {
 constexpr char kChannel[] = "AIRDOS_DOCTOR";
 constexpr std::size_t kCameraBytes = 90000;  // a JPEG image of 1226 x 370 px
 constexpr double kCameraPeriod_s = 1.0 / 30;
-constexpr double kLastArrival_s = 0.5;  // for messages still on their way at the end
+constexpr double kLastArrival_s = 0.5;  // waits for messages still in transit at the end
 constexpr std::size_t kMaxBytes = 131072;
 
-/// What a test message starts with.
+/// The start of a test message.
 struct Stamp {
   std::int64_t number = 0;
   std::int64_t utime = 0;
@@ -36,7 +36,7 @@ std::string NameOf(const process_status_t& status) {
   return status.process + " (" + std::to_string(status.pid) + ")";
 }
 
-/// "CAMERA_LEFT 30/s, STATUS 4/s".
+/// Lists rates, such as "CAMERA_LEFT 30/s, STATUS 4/s".
 std::string Describe(const BusTraffic& traffic) {
   std::string text;
   for (const auto& [name, channel] : traffic.channels) {
@@ -161,7 +161,7 @@ RoundTrip MeasureRoundTrip(const std::string& url, double duration_s) {
   LcmTransport receiver(url);
   std::vector<double> latencies_ms;
   receiver.Subscribe(kChannel, [&](const void* data, std::size_t size, std::int64_t receive_utime) {
-    if (size != kCameraBytes) return;  // another doctor of another version
+    if (size != kCameraBytes) return;  // another doctor of a different version
     Stamp stamp;
     std::memcpy(&stamp, data, sizeof(stamp));
     latencies_ms.push_back(1e-3 * static_cast<double>(receive_utime - stamp.utime));

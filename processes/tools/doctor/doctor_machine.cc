@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 constexpr double kRate_hz = 30;
 constexpr double kLogMbPerFrame = 0.25;  // two JPEG images of 90 kB, mask, keypoints, results
 constexpr double kMapMbPerFrame = 0.02;  // crossings of 100 frames: 0.01
-constexpr double kMinLog_min = 10;       // less is a warning
+constexpr double kMinLog_min = 10;       // less causes a warning
 constexpr double kMinMap_min = 1;        // less is a failure
 
 std::string FirstLineOf(const char* command) {
@@ -53,7 +53,7 @@ Diagnoses JudgeSpy(const SpyPlaces& places) {
                       is_there ? what : what + " is missing: lcm-spy cannot be used",
                       is_there ? "" : mend});
   };
-  // A line that starts so comes from a Java, not from a shell that found none.
+  // Such a line comes from Java itself, not from a shell that did not find it.
   const std::string java = FirstLineOf("LC_ALL=C java -version 2>&1 | grep ' version '");
   judge(!java.empty(), java.empty() ? "java" : java, "sudo apt-get install default-jre");
   judge(Exists(places.lcm_jar), places.lcm_jar, "sudo apt-get install liblcm-java");

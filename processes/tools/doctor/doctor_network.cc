@@ -18,10 +18,10 @@
 namespace airdos {
 namespace {
 
-constexpr std::int64_t kLosslessBytes = 4194304;  // what LcmTransport asks for
+constexpr std::int64_t kLosslessBytes = 4194304;  // what LcmTransport requests
 constexpr std::int64_t kUsualBytes =
-    212992;  // Linux' default: lost none of 90 kB, 1 of 150 of 128 kB
-constexpr std::int64_t kMessageBytes = 131072;  // the largest message of ours
+    212992;  // Linux' default: no messages of 90 kB lost, 1 in 150 of 128 kB
+constexpr std::int64_t kMessageBytes = 131072;  // our largest message
 
 class Socket {
  public:
@@ -44,7 +44,7 @@ int ToInt(const std::string& url, const std::string& digits, std::int64_t max) {
   return static_cast<int>(value);
 }
 
-/// Asks the kernel over which interface it sends to an address; nothing where it has no route.
+/// The interface through which the kernel sends to an address; nothing if it has no route.
 std::optional<int> InterfaceTo(const in_addr& address) {
   struct {
     nlmsghdr header;
@@ -142,7 +142,7 @@ std::int64_t GrantedReceiveBuffer(std::int64_t asked) {
   int granted = 0;
   socklen_t length = sizeof(granted);
   if (getsockopt(socket.handle(), SOL_SOCKET, SO_RCVBUF, &granted, &length) != 0) return 0;
-  return asked > 0 ? granted / 2 : granted;  // the kernel doubles what was asked, for its own use
+  return asked > 0 ? granted / 2 : granted;  // the kernel doubles what was requested
 }
 
 Diagnoses JudgeRoute(const MulticastUrl& url, const MulticastRoute& route) {

@@ -1,4 +1,5 @@
-// airdos-doctor: whether this machine can run the processes, and what mends it.
+// airdos-doctor: tests whether this machine can run the processes, and says how to fix what is
+// wrong.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -22,7 +23,7 @@ struct Arguments {
   std::string json;
   bool force = false;
   std::string round_trip = "auto";
-  double listen_s = 1.3;  // STATUS comes once a second
+  double listen_s = 1.3;  // STATUS is published once a second
   double round_trip_s = 2;
 };
 
@@ -51,7 +52,7 @@ int Run(const Arguments& arguments) {
   const OutputFiles outputs({arguments.json}, {{}, arguments.force});
   const MulticastUrl url = ParseMulticastUrl(arguments.lcm_url);
   Diagnoses result = JudgeRoute(url, FindRoute(url));
-  // The same that LcmTransport asks for.
+  // The same size that LcmTransport requests.
   Append(JudgeBuffer(url, GrantedReceiveBuffer(url.recv_buf_size.value_or(4194304)),
                      GrantedReceiveBuffer(0)),
          &result);

@@ -14,7 +14,7 @@ struct Column {
   const char* title;
   const char* key;  // in JSON
   double AblationErrors::*value;
-  double scale;  // into the unit of the title
+  double scale;  // factor to the unit in the title
 };
 constexpr std::array<Column, 5> kColumns = {
     {{"ATE cm", "ate_unaligned_m", &AblationErrors::ate_unaligned_m, 100},

@@ -12,8 +12,8 @@
 namespace airdos {
 namespace {
 
-/// Twice the cost of the static scene's residuals at the values of `problem`. Landmarks there are
-/// the best for the poses: nothing else holds them.
+/// Twice the cost of the static scene's residuals at the poses of `problem`. Its landmarks are
+/// optimal for these poses, since nothing else constrains them.
 double StaticDeviance(BundleOptions bundle, BundleProblem problem) {
   bundle.use_people = bundle.compute_covariance = false;
   bundle.max_iterations = bundle.max_iterations_after_elimination = 0;

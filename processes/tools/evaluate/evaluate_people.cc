@@ -22,7 +22,7 @@ struct PeopleArguments {
   bool force = false;
 };
 
-/// The poses of the camera that belong together. The truth must be in optical axes.
+/// The matched poses of the camera. The truth must be in optical axes.
 TrajectoryReport CompareCameras(const PeopleArguments& arguments) {
   EvaluationOptions options;
   options.max_time_difference_s = 0.001;

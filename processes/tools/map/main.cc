@@ -1,4 +1,4 @@
-// airdos-map: what is in a 4-D map, and its exports.
+// airdos-map: shows and exports the contents of a 4-D map.
 #include <CLI/CLI.hpp>
 #include <cinttypes>
 #include <cstdio>

@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
   app.add_option("--flush-s", options.flush_s, "the disk is told to keep what came this often (s)")
       ->check(CLI::Range(0.01, 1e6))
       ->capture_default_str();
-  // A recording cannot be made again: it is never marked as one that may be replaced.
+  // A recording cannot be repeated, so it is never marked as a file that may be replaced.
   app.add_flag("--force", options.replaces_file, "replace the log if there is one");
 
   return airdos::RunProgram(argc, argv, &app, [&] {

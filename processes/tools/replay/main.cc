@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
       return airdos::OpenFrameSource(input.path(), first, last, inputs, check.calibration);
     };
     airdos::LoopedSource source(open, num_loops);
-    // Said once everything else is known to be right.
+    // Reported only once everything else is known to be right.
     std::vector<std::string> remarks;
     for (const std::string& note : source.TakeNotes()) remarks.push_back("note: " + note);
     if (!check.is_off && !setup.from_features) {

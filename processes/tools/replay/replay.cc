@@ -30,8 +30,8 @@ double NowMs(clockid_t clock) {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-// Adds up what a node's calls take until it is done with a frame. Each node has its own entry, so
-// that nodes on different threads do not meet.
+// Accumulates the time of a node's calls until it is done with a frame. Each node has its own
+// entry, so nodes on different threads do not interfere.
 class Stopwatch : public Bus::WorkObserver {
  public:
   explicit Stopwatch(const std::vector<ReplayNode>& nodes) {
@@ -71,9 +71,9 @@ class Stopwatch : public Bus::WorkObserver {
   std::map<std::string, Lap> laps_;
 };
 
-using FrameKey = std::pair<std::int64_t, std::int64_t>;  // session, seq
+using FrameKey = std::pair<std::int64_t, std::int64_t>;  // (session, seq)
 
-// Keeps what the bus carries: log, digests, numbers of frames.
+// Keeps what the bus carries: log, digests, frame numbers.
 class Archive {
  public:
   explicit Archive(const ReplayOptions& options) : writes_inputs_(options.writes_inputs) {
@@ -162,7 +162,7 @@ double PeakMemoryMb() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-// The next frame; where the source fails, what came before has its effect first.
+// The next frame. If the source fails, everything before takes effect first.
 std::vector<Envelope> NextFrame(FrameSource* source, Bus* bus) {
   try {
     return source->NextFrame();
@@ -198,7 +198,7 @@ ReplayResult Replay(FrameSource* source, const std::vector<ReplayNode>& nodes,
   for (const ReplayNode& entry : nodes) entry.node->Finish();
 
   archive.Fill(&result);
-  // What went into a pipe or a device cannot be read again.
+  // Whatever went to a pipe or a device cannot be read again.
   if (StampOf(options.out_path)) result.log_sha256 = FileSha256(options.out_path);
   result.timing = stopwatch.TakeTiming();
   for (const ReplayNode& entry : nodes) AddRemarks(*entry.node, &result.remarks);

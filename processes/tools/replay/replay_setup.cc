@@ -26,11 +26,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kSession = 1;  // of data sets: always the same, so that runs compare
+constexpr std::int64_t kSession = 1;  // of data sets; always the same, so that runs are comparable
 
 struct Process {
-  std::string name;  // of its configuration file and in overrides
-  // None of the map recorder, which is made last.
+  std::string name;  // in its configuration file and in overrides
+  // Not set for the map recorder, which is created last.
   std::function<std::unique_ptr<Node>(ConfigReader*)> make_node;
   std::vector<std::string> publishes;
 };
@@ -61,7 +61,7 @@ Configs ReadConfigs(const ReplaySetup& setup) {
   return configs;
 }
 
-/// The one process whose configuration has the key of "section.key=value".
+/// The only process whose configuration has the key in "section.key=value".
 std::string OwnerOf(const std::string& text, const Configs& configs) {
   const std::string key = text.substr(0, text.find('='));
   std::string owner;
@@ -105,7 +105,7 @@ Assignments AssignmentsOf(const ReplaySetup& setup, const Configs& configs) {
     assignments["frontend"].push_back(std::string("masks.use=") +
                                       (masks == "on" ? "true" : "false"));
   }
-  // Not what a configuration says: that of an earlier run names its folder.
+  // Not taken from the configuration: an earlier run's names that run's folder.
   assignments["map_recorder"].push_back("output.directory=" + setup.run_dir);
   for (const std::string& text : setup.overrides) AddOverride(text, configs, &assignments);
   return assignments;
@@ -118,7 +118,7 @@ void WriteText(const std::string& path, const std::string& text) {
   if (!file) throw InputError(path + ": cannot be written");
 }
 
-/// The name of the file within the folder; empty if it lies elsewhere.
+/// The name of the file within the folder; empty if it is elsewhere.
 std::string NameWithin(const std::string& folder, const std::string& path) {
   std::error_code error;
   const fs::path name = fs::weakly_canonical(fs::absolute(path, error), error)
@@ -127,7 +127,8 @@ std::string NameWithin(const std::string& folder, const std::string& path) {
   return is_within ? name.string() : "";
 }
 
-/// Refuses what must not be written before anything is: no two files of one name, none in the way.
+/// Refuses what must not be written before anything is written: duplicate names, or files in the
+/// way.
 void ClaimOutputs(const std::vector<std::string>& names, OutputFolder* results) {
   results->RequireReplaceable(names, [](const std::string&, const std::string&) { return false; });
   for (std::size_t i = 0; i < names.size(); ++i) {

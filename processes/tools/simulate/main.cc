@@ -1,4 +1,5 @@
-// airdos-simulate: a log of what the frontend and the human tracker would say of a simulated world.
+// airdos-simulate: writes a log of what frontend and human tracker would publish in a simulated
+// world.
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <iostream>

@@ -52,8 +52,8 @@ Envelope Calibration(const SimulationOptions& options, const Header& header) {
   return {channel::kCalibration, Encode(message)};
 }
 
-/// By how much constant velocity is wrong from frame to frame, per axis: translation (m) and
-/// rotation (rad). What a front end would have learnt of its carrier, generously as ours.
+/// Error of the constant-velocity prediction per frame and axis: translation (m) and rotation
+/// (rad). What a frontend would have learnt for its carrier, with a margin like ours.
 struct CarrierSigma {
   double position_m = 0;
   double orientation_rad = 0;

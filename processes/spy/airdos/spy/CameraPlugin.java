@@ -23,9 +23,9 @@ import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
 /**
- * Opens for channels of images: CAMERA_LEFT with the keypoints, tracks and static features of the
- * same image drawn over it. The other channels come by a subscription of its own on the URL of
- * LCM_DEFAULT_URL (launch_scripts/spy.sh sets it), because the spy hands over one channel only.
+ * Opens for image channels; CAMERA_LEFT has the keypoints, tracks and static features of the
+ * same image drawn over it. The other channels are received by a separate subscription on
+ * LCM_DEFAULT_URL (set by launch_scripts/spy.sh), because the spy passes on one channel only.
  */
 public final class CameraPlugin implements SpyPlugin {
   static final String NAME = "Camera with people and features";
@@ -39,7 +39,7 @@ public final class CameraPlugin implements SpyPlugin {
     return fingerprint == image_t.LCM_FINGERPRINT;
   }
 
-  /** Called with nulls first, for the name only. */
+  /** First called with nulls, only for the name. */
   @Override
   public Action getAction(JDesktopPane desktop, ChannelData channel) {
     return new AbstractAction(NAME) {
@@ -81,12 +81,12 @@ public final class CameraPlugin implements SpyPlugin {
     try {
       window.setMaximum(true);
     } catch (PropertyVetoException e) {
-      // Then it stays as large as it is.
+      // Then it keeps its size.
     }
     return window;
   }
 
-  /** Runs `stop` when the plugin's window or the spy's window around it goes away. */
+  /** Runs `stop` when the plugin's window, or the spy's window around it, is closed. */
   static void onClose(JInternalFrame window, JDesktopPane desktop, Runnable stop) {
     window.addInternalFrameListener(
         new InternalFrameAdapter() {

@@ -24,8 +24,8 @@ import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
 /**
- * Opens for STATUS: one row for each process, red where it is not READY or has fallen silent, yellow
- * where it warns.
+ * Opens for STATUS: one row per process, red if it is not READY or has fallen silent, yellow if
+ * it has warnings.
  */
 public final class StatusPlugin implements SpyPlugin {
   static final String NAME = "Processes";
@@ -40,7 +40,7 @@ public final class StatusPlugin implements SpyPlugin {
     return fingerprint == process_status_t.LCM_FINGERPRINT;
   }
 
-  /** Called with nulls first, for the name only. */
+  /** First called with nulls, only for the name. */
   @Override
   public Action getAction(JDesktopPane desktop, ChannelData channel) {
     return new AbstractAction(NAME) {
@@ -61,7 +61,7 @@ public final class StatusPlugin implements SpyPlugin {
             process_status_t status = new process_status_t(stream);
             SwingUtilities.invokeLater(() -> model.add(status, nowMs()));
           } catch (IOException | RuntimeException e) {
-            // The spy's own column counts what does not decode.
+            // The spy's own column counts messages that do not decode.
           }
         };
     lcm.subscribe(name, subscriber);
@@ -79,7 +79,7 @@ public final class StatusPlugin implements SpyPlugin {
     timer.start();
   }
 
-  /** For ages only, so not the wall clock, which may be set back. */
+  /** For ages only. Not the wall clock, which may be set back. */
   private static long nowMs() {
     return System.nanoTime() / 1_000_000;
   }
