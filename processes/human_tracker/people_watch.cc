@@ -8,9 +8,8 @@ namespace airdos {
 namespace {
 
 constexpr double kMinConfidence = 0.2;
-constexpr int kMinJoints = 5;  // of a person, in both images
-constexpr double kMaxError_px =
-    8;  // between joints of the same person, after a shift along the row
+constexpr int kMinJoints = 5;       // of a person, in both images
+constexpr double kMaxError_px = 8;  // between the same joints, after a shift along the row
 constexpr double kNoSign_px = 0.3;
 constexpr int kMinPeople = 20;
 constexpr double kMinShare = 0.7;
