@@ -1,7 +1,7 @@
 # shellcheck shell=bash
-# Shared by the benchmark scripts: one run on one sequence, and several at a time. To be sourced after common.sh.
+# Shared by the benchmark scripts: a run on one sequence, and several runs in parallel. Source it after common.sh.
 
-# Processor cores; of the default for --jobs.
+# Number of processor cores, the default for --jobs.
 num_cores() { nproc 2> /dev/null || echo 1; }
 
 # parse_options NAMES ARGUMENT…: sets the variable of each option that is named (run-dir fills run_dir) and collects what is no
@@ -27,10 +27,10 @@ parse_options() {
   done
 }
 
-# need_number OPTION VALUE: a whole number above zero.
+# need_number OPTION VALUE: requires a whole number above zero.
 need_number() { [[ $2 =~ ^[1-9][0-9]*$ ]] || die_usage "$1: not a whole number above 0: '$2'"; }
 
-# need_modes LIST [OPTION]: what people may be used for.
+# need_modes LIST [OPTION]: requires modes of people.
 need_modes() {
   local mode option=${2:---modes}
   [[ $1 =~ [^[:space:]] ]] || die_usage "$option: the list is empty"
@@ -39,27 +39,27 @@ need_modes() {
   done
 }
 
-# need_benchmark_programs: what every benchmark runs.
+# need_benchmark_programs: requires what every benchmark runs.
 need_benchmark_programs() {
   need_program airdos-replay
   need_program airdos-evaluate
   command -v jq > /dev/null || die "jq is missing: apt-get install jq"
 }
 
-# need_sequences FOLDER…: folders with different names, because results are filed by name.
+# need_sequences FOLDER…: requires folders with distinct names, because results are filed by name.
 need_sequences() {
   local folder
   local -A seen=()
   (($# > 0)) || die_usage "no sequence given (see --help)"
   for folder in "$@"; do
     [[ -d $folder ]] || die_usage "no folder '$folder'"
-    [[ -z ${seen[${folder##*/}]:-} ]] || die_usage "two sequences have the name '${folder##*/}'"
+    [[ -z ${seen[${folder##*/}]:-} ]] || die_usage "two sequences are named '${folder##*/}'"
     seen[${folder##*/}]=1
   done
 }
 
 # replay_sequence NAME FOLDER RUN REPLAY_OPTION…: runs all processes on a sequence, leaves trajectories, the map and
-# timing.json in the folder RUN. NAME is said where it fails.
+# timing.json in the folder RUN. NAME is used in error messages.
 replay_sequence() {
   local name=$1 folder=$2 run=$3
   shift 3
@@ -78,10 +78,10 @@ evaluate_run() {
     > "$run/evaluation.txt" 2>&1 || die "$name: airdos-evaluate failed (log: $run/evaluation.txt)"
 }
 
-# number_of PATH FILE: a number of one of our JSON files.
+# number_of PATH FILE: a number from one of our JSON files.
 number_of() { jq -r ".$1" "$2"; }
 
-# axes_of EVALUATION_JSON: the axes of the ground truth that were found, for --gt-axes.
+# axes_of EVALUATION_JSON: the detected axes of the ground truth, for --gt-axes.
 axes_of() { jq -r '.ground_truth_axes | ascii_downcase' "$1"; }
 
 running_jobs=0 failed_jobs=0
@@ -100,7 +100,7 @@ start_job() {
   running_jobs=$((running_jobs + 1))
 }
 
-# wait_for_jobs: until all have ended; failed_jobs counts those that failed.
+# wait_for_jobs: waits until all have ended; failed_jobs counts those that failed.
 wait_for_jobs() {
   while ((running_jobs > 0)); do
     wait -n || failed_jobs=$((failed_jobs + 1))
@@ -108,13 +108,13 @@ wait_for_jobs() {
   done
 }
 
-# finish_jobs: the same; ends the script if one failed (which has said why).
+# finish_jobs: the same, but ends the script if one failed (and has reported why).
 finish_jobs() {
   wait_for_jobs
   ((failed_jobs == 0)) || die "$failed_jobs of the runs failed"
 }
 
-# To be set as the trap on EXIT: no run goes on when the script is ended.
+# For a trap on EXIT: no run continues after the script has ended.
 end_jobs() {
   local pid
   for pid in $(jobs -p); do kill -TERM -- "-$pid" 2> /dev/null || true; done

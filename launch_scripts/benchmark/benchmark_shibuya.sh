@@ -4,18 +4,17 @@
 #
 # Usage: launch_scripts/benchmark/benchmark_shibuya.sh DATASET_DIR [--modes "off mask_only on"] [--jobs N] [--run-dir FOLDER] [--set P:S.K=V]…
 #   DATASET_DIR       folder with the sequences, up to three folders deep; a sequence is a folder with image_0 and image_1,
-#                     known by its name (Standing01, roadcrossing_03 …). Those of the paper that are missing are said; others
-#                     are run, too.
-#   --modes LIST      of off, mask_only, on (default: all three)
-#   --jobs N          runs at a time (default: as many as there are cores)
-#   --run-dir FOLDER  where everything goes (default logs/runs/shibuya): shibuya.md and a folder a run
-#   --set P:S.K=V     of airdos-replay: another value in process P's configuration (again for more)
+#                     recognised by its name (Standing01, roadcrossing_03 …). Sequences of the paper that are missing are
+#                     reported; others are run as well.
+#   --modes LIST      out of off, mask_only, on (default: all three)
+#   --jobs N          number of parallel runs (default: the number of cores)
+#   --run-dir FOLDER  folder for the results (default logs/runs/shibuya): shibuya.md and a folder per run
+#   --set P:S.K=V     passed to airdos-replay: overrides a value in process P's configuration (repeatable)
 #   --help            this text
 #
-# ATE: root mean square in m after SE(3) alignment without scale, over all frames; where frames have no pose, the share that
-# has one follows. The axes of gt_pose.txt (any, left-handed ones too) are found out for each sequence from the motion of the
-# run with masks, and said; where the motion fits more than one, the errors of all are printed, and where it fits none, no
-# figure is.
+# ATE: RMS in m after SE(3) alignment without scale, over all frames; if some frames have no pose, followed by the share that has
+# one. The axes of gt_pose.txt (any, including left-handed ones) are detected for each sequence from the motion in the run with
+# masks, and reported. If the motion fits several, the errors for all of them are printed; if it fits none, no figure is.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
@@ -37,7 +36,7 @@ need_number --jobs "$jobs"
 need_modes "$modes"
 need_benchmark_programs
 
-# plain_name NAME: small letters and digits only.
+# plain_name NAME: lower-case letters and digits only.
 plain_name() { tr '[:upper:]' '[:lower:]' <<< "$1" | tr -cd 'a-z0-9'; }
 
 # Finds the sequences: the paper's in its order, then the others by name.
@@ -51,10 +50,10 @@ find_sequences() {
     for paper in "${paper_sequences[@]}"; do
       [[ $(plain_name "$name") != $(plain_name "$paper") ]] || name=$paper
     done
-    [[ -z ${folder_of[$name]:-} ]] || die_usage "'$name' is there twice: ${folder_of[$name]} and $folder"
+    [[ -z ${folder_of[$name]:-} ]] || die_usage "'$name' exists twice: ${folder_of[$name]} and $folder"
     folder_of[$name]=$folder
   done < <(find -L "$dataset" -mindepth 1 -maxdepth 4 -type d -name image_0 | sort)
-  ((${#folder_of[@]} > 0)) || die_usage "'$dataset' holds no sequence: no folder with image_0 and image_1"
+  ((${#folder_of[@]} > 0)) || die_usage "'$dataset' contains no sequence: no folder with image_0 and image_1"
 }
 find_sequences
 sequences=("${paper_sequences[@]}") missing=()
@@ -63,7 +62,7 @@ while IFS= read -r name; do
   [[ " ${paper_sequences[*]} " == *" $name "* ]] || sequences+=("$name")
 done < <(printf '%s\n' "${!folder_of[@]}" | sort)
 
-# run_one NAME MODE: the axes come from the run with masks, if that is another one.
+# run_one NAME MODE: takes the axes from the run with masks, if that is another one.
 run_one() {
   local name=$1 mode=$2 run=$run_dir/$1/$2 axes=auto reference=$run_dir/$1/mask_only/evaluation.json
   replay_sequence "$name, $mode" "${folder_of[$name]}" "$run" --calibration tartanair-shibuya --people "$mode" "${replay_options[@]}"
@@ -75,7 +74,7 @@ run_one() {
   evaluate_run "$name, $mode" "$run" --gt-axes "$axes"
 }
 
-# cell NAME MODE: ATE, with the share of the frames that have a pose where that is not all.
+# cell NAME MODE: ATE, with the share of frames with a pose if not all have one.
 cell() {
   local file=$run_dir/$1/$2/evaluation.json completeness
   if [[ -z ${folder_of[$1]:-} ]]; then
@@ -90,7 +89,7 @@ cell() {
   fi
 }
 
-# published NAME FIGURE…: a row; nothing is known of sequences that are not the paper's.
+# published NAME FIGURE…: a row; there are no figures for sequences that are not in the paper.
 published() {
   local name=$1 i
   shift
@@ -113,7 +112,7 @@ print_table() {
   done
 }
 
-# Which axes were found, with the errors that other axes would give where the motion fits these as well.
+# The axes detected, with the errors for other axes if the motion fits these as well.
 print_axes() {
   local name file
   for name in "${sequences[@]}"; do

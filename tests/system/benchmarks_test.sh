@@ -48,10 +48,10 @@ wrong_options_exit_2_in_one_line() {
   expect 2 "--live: 'maybe' is neither yes nor no" "$scripts/benchmark/benchmark_speed.sh" "$work" --live maybe
   expect 2 "--loops: not a whole number above 0: '0'" "$scripts/benchmark/benchmark_memory.sh" "$work" --loops 0
   mkdir -p "$work/a/same" "$work/b/same"
-  expect 2 "two sequences have the name 'same'" "$scripts/benchmark/benchmark_perturbed.sh" "$work/a/same/" "$work/b/same"
+  expect 2 "two sequences are named 'same'" "$scripts/benchmark/benchmark_perturbed.sh" "$work/a/same/" "$work/b/same"
   expect 2 "more than one folder" "$scripts/benchmark/benchmark_shibuya.sh" "$work/a" "$work/b"
-  expect 2 "holds no sequence" "$scripts/benchmark/benchmark_shibuya.sh" "$work/a"
-  expect 2 "holds none of the sequences" "$scripts/benchmark/benchmark_kitti_tracking.sh" "$work/a"
+  expect 2 "contains no sequence" "$scripts/benchmark/benchmark_shibuya.sh" "$work/a"
+  expect 2 "contains none of the sequences" "$scripts/benchmark/benchmark_kitti_tracking.sh" "$work/a"
 }
 
 # Stand-ins: airdos-replay writes down its arguments; airdos-evaluate gives an ATE that depends on the run. A folder named
@@ -154,7 +154,7 @@ shibuya_says_what_is_missing_failed_or_ambiguous() {
   says '- tilted: not found out'
   says 'tilted, on: no figures, because the run with masks has none'
   mkdir -p "$base/again/standing-01"/{image_0,image_1}
-  expect 2 "'Standing01' is there twice" env AIRDOS_BIN="$work/bin" "$scripts/benchmark/benchmark_shibuya.sh" "$base"
+  expect 2 "'Standing01' exists twice" env AIRDOS_BIN="$work/bin" "$scripts/benchmark/benchmark_shibuya.sh" "$base"
 }
 
 kitti_tracking_takes_28_from_testing() {

@@ -119,7 +119,7 @@ lost_frames_fail_above_the_limit() {
 lost_images_fail_whatever_the_limit() {
   good_figures
   figures map-recorder 100 0 0 3 2
-  long_run 1 'camera images were lost on their way: see airdos-doctor' --max-lost 100
+  long_run 1 'camera images were lost in transit: see airdos-doctor' --max-lost 100
   figures map-recorder 100 0 0 3 3
   long_run 0 '' --max-lost 100
 }

@@ -132,7 +132,7 @@ demo_replaces_nothing_in_a_folder_that_was_named() {
 demo_without_ground_truth_is_well() {
   fresh
   FAILS=truth run 0 "$demo" --run-dir "$work/no_truth"
-  says out 'the log holds no ground truth'
+  says out 'the log has no ground truth'
   ran 0 airdos-evaluate
   says out "$work/no_truth/map.png"
 }

@@ -31,14 +31,14 @@ wrong_options_exit_2_in_one_line() {
   expect 2 "--speed: not a number: 'x'" "$scripts/run_live.sh" --speed x
   expect 2 "exclude each other" "$scripts/run_live.sh" --data / --log "$0"
   expect 2 "--minutes: not a whole number above 0: '0'" "$scripts/long_run.sh" --minutes 0
-  expect 2 "--max-lost: not a whole number of 0 to 100: '101'" "$scripts/long_run.sh" --max-lost 101
+  expect 2 "--max-lost: not a whole number from 0 to 100: '101'" "$scripts/long_run.sh" --max-lost 101
   expect 2 "no folder or log '/nonexistent'" "$scripts/long_run.sh" /nonexistent
   expect 2 "no file '/nonexistent.lcm'" "$scripts/replay_log.sh" /nonexistent.lcm
   expect 2 "no run of run_live.sh in '/nonexistent'" "$scripts/replay_log.sh" "$0" --run /nonexistent
   expect 2 "no run of run_live.sh in '/nonexistent'" "$scripts/spy.sh" --namespace /nonexistent
   expect 2 "--seconds: not a whole number above 0: '0'" "$scripts/fuzz.sh" --seconds 0
   expect 2 "--jobs: not a whole number above 0: '0'" "$scripts/fuzz.sh" --jobs 0
-  expect 1 "airdos-frontend is missing: build first" env AIRDOS_BIN="$work/none" "$scripts/run_live.sh"
+  expect 1 "airdos-frontend is missing: build it" env AIRDOS_BIN="$work/none" "$scripts/run_live.sh"
 }
 
 processes_start_and_end_together() {
