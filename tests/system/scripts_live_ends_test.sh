@@ -166,7 +166,7 @@ replay_goes_on_when_a_process_dies() {
   await "the player" test -s "$work/network_of_player"
   [[ $(cat "$work/network_of_player") == "$(readlink "/proc/$live_pid/ns/net")" ]] || fail "played into another network"
   kill -KILL "$(sed -n 's/^optimizer=//p' "$work/run/state")"
-  await "the report" grep -q "optimizer ended with exit code 137; the others go on" "$work/live.out"
+  await "the report" grep -q "optimizer ended with exit code 137; the others continue" "$work/live.out"
   echo > "$work/player.fifo"
   wait "$pid" || got=$?
   ((got == 0)) || fail "replay_log.sh: exit code $got: $(cat "$work/replay.out")"

@@ -87,7 +87,7 @@ others_go_on_when_one_is_killed() {
   start_live
   await "READY" grep -qs "READY: frontend" "$work/live.out"
   kill -KILL "$(sed -n 's/^optimizer=//p' "$work/run/state")"
-  await "the report" grep -q "optimizer ended with exit code 137; the others go on" "$work/live.out"
+  await "the report" grep -q "optimizer ended with exit code 137; the others continue" "$work/live.out"
   [[ -n $(pids_of airdos-frontend) ]] || fail "the frontend does not go on"
   kill -TERM "$live_pid"
   end_live 1
