@@ -33,8 +33,8 @@ std::string ExplainFocalLength(const StereoCamera& camera) {
   if (is_normalised && camera.cx_px < 1) {
     return "; divided by the image's width? In px it would be " + Brief(as_px);
   }
-  if (camera.fx_px < 0.1) return "; in m, as of a lens? It is wanted in px";
-  if (camera.fx_px < 50) return "; in mm, as of a lens? It is wanted in px";
+  if (camera.fx_px < 0.1) return "; in m, as of a lens? It is expected in px";
+  if (camera.fx_px < 50) return "; in mm, as of a lens? It is expected in px";
   return "; is it in px of these images?";
 }
 
@@ -59,7 +59,7 @@ bool CheckResolution(const StereoCamera& camera, const std::string& where, Findi
   const std::optional<double> factor = ResolutionFactor(camera);
   if (!factor) return true;
   const std::string what = "the principal point " + Brief(camera.cx_px) + " " +
-                           Brief(camera.cy_px) + " is the middle of images " +
+                           Brief(camera.cy_px) + " is the centre of images " +
                            TimesAsLarge(*factor) + " as these of " + SizeOf(camera);
   // Between 10 and 20 %, the lens may just be badly centred.
   if (*factor < 0.8 || *factor > 1.25) {
@@ -87,14 +87,14 @@ void CheckPrincipalPoint(const StereoCamera& camera, const std::string& where,
   if (std::abs(off_x) <= kFarOff && std::abs(off_y) <= kFarOff) return;
   std::string cause;
   if (camera.cx_px <= 1 && camera.cy_px <= 1) {
-    cause = "; divided by the image's size? It is wanted in px";
+    cause = "; divided by the image's size? It is expected in px";
   } else if (std::abs(off_x) <= kFarOff || std::abs(off_y) <= kFarOff) {
     cause =
-        "; if the images were cropped, what was cut off at the left and top is to be "
+        "; if the images were cropped, what was cut off at the left and top must be "
         "subtracted from it";
   }
   findings->Warn("camera.principal_point", where,
-                 point + " lies far from the middle of images of " + SizeOf(camera) + cause);
+                 point + " is far from the centre of images of " + SizeOf(camera) + cause);
 }
 
 }  // namespace

@@ -181,7 +181,7 @@ void CheckCounts(const StereoSequence& sequence, FindingList* findings) {
       continue;  // CheckMaskFiles() reports it
     }
     if (num_files == 0) {
-      findings->Note(std::string(kind.name) + ".count", folder, "none: nobody will be known");
+      findings->Note(std::string(kind.name) + ".count", folder, "none: there will be no people");
     } else if (num_used == 0) {
       findings->Fail(std::string(kind.name) + ".count", folder,
                      "none of its files has the name of an image");
@@ -226,12 +226,12 @@ void CheckMaskFiles(const StereoSequence& sequence, FindingList* findings) {
   });
   const std::string ending = fs::path(others[0]).extension().string();
   const bool all_other = unmasked.size() == sequence.num_frames();
-  findings->Add(are_needed || all_other ? Severity::kError : Severity::kWarning,
-                "masks.other_files", folder,
-                "holds " + std::to_string(others.size()) + " files that are no .png (" + others[0] +
-                    (others.size() > 1 ? " ..." : "") + "), and masks are read from .png only; " +
-                    (IsJpegName(ending) ? "JPEG smears the numbers of masks: " : "") +
-                    "save them as PNG, 0 for the background, or move them away");
+  findings->Add(
+      are_needed || all_other ? Severity::kError : Severity::kWarning, "masks.other_files", folder,
+      "holds " + std::to_string(others.size()) + " files that are not .png (" + others[0] +
+          (others.size() > 1 ? " ..." : "") + "), and masks are read from .png only; " +
+          (IsJpegName(ending) ? "JPEG blurs the values of masks: " : "") +
+          "save them as PNG, 0 for the background, or move them away");
 }
 
 void CheckCompression(const CheckedInput& input, const StereoSequence& sequence,

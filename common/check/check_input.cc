@@ -67,7 +67,7 @@ void CheckPictures(const CheckedInput& input, const CheckOptions& options, Stere
     findings->Note("frames.looked_at", input.name(),
                    "pictures of " + std::to_string(sample.size()) + " of " +
                        std::to_string(input.utimes().size()) +
-                       " frames were looked at (--all looks at all)");
+                       " frames were checked (--all checks all)");
   }
 }
 

@@ -65,7 +65,9 @@ class CheckedInput {
   virtual std::vector<StereoPeople> LoadPeople(const std::vector<std::size_t>& frames) const = 0;
 };
 
+/// What a check examines, and how thoroughly.
 struct CheckOptions {
+  /// kQuick: only what is checked before a run.
   enum class Depth { kQuick, kFull };
   Depth depth = Depth::kFull;
   std::size_t max_frames = 20;       ///< whose pictures are looked at, evenly spread

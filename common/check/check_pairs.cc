@@ -157,7 +157,7 @@ bool PeoplePairCheck::ReportResolution(const std::string& where, FindingList* fi
     return false;
   findings->Fail("keypoints.resolution", where,
                  "people in the right images are " + Brief(factor) +
-                     " times as large as in the left ones: keypoints of images of two sizes?");
+                     " times as large as in the left ones: detected in images of different sizes?");
   return true;
 }
 
@@ -174,17 +174,16 @@ void PeoplePairCheck::Report(const std::string& where, FindingList* findings) co
                             " people seen in both images: " + Percent(1 - num_negative / num) +
                             " have a positive disparity, median " +
                             Brief(Quantile(disparities_px_, 0.5)) + " px; rows differ by " +
-                            Brief(Quantile(absolute_px, 0.5)) + " px (median), on the whole by " +
+                            Brief(Quantile(absolute_px, 0.5)) + " px (median), overall by " +
                             Brief(row_step_px) + " px";
   // A detector's rows vary by a few px from image to image, with either sign.
   const double allowed_px = std::max(3.0, 0.01 * camera_.height);
   if (num_negative > 0.7 * num) {
-    findings->Fail("keypoints.swapped", where,
-                   "the keypoints of left and right are exchanged: " + pairs);
+    findings->Fail("keypoints.swapped", where, "left and right keypoints are exchanged: " + pairs);
   } else if (std::abs(row_step_px) > allowed_px || Quantile(absolute_px, 0.5) > 2 * allowed_px) {
     findings->Warn("keypoints.rows", where,
-                   "the keypoints of left and right lie on different rows (of another size of the "
-                   "image, not rectified, or of other frames?): " +
+                   "left and right keypoints are on different rows (from another size of the "
+                   "image, not rectified, or from other frames?): " +
                        pairs);
   } else {
     findings->Note("keypoints.pairs", where, pairs);

@@ -134,14 +134,15 @@ void KeypointCheck::Report(const std::string& where, FindingList* findings) cons
   const double num_points = num_points_;
   if (num_below_two_ > 0.5 * num_points) {
     findings->Fail("keypoints.normalised", where,
-                   "coordinates are in 0..1 of the image's size; they are wanted in px");
+                   "coordinates are fractions of the image size; they are expected in px");
   } else if (num_outside_ > 0.2 * num_points) {
-    findings->Fail("keypoints.scale", where,
-                   Percent(num_outside_ / num_points) +
-                       " of the keypoints lie outside the image: they are of another size of it, "
-                       "about " +
-                       Brief(std::max(Quantile(u_shares_, 0.99), Quantile(v_shares_, 0.99))) +
-                       " times as large");
+    findings->Fail(
+        "keypoints.scale", where,
+        Percent(num_outside_ / num_points) +
+            " of the keypoints are outside the image: they belong to another image size, "
+            "about " +
+            Brief(std::max(Quantile(u_shares_, 0.99), Quantile(v_shares_, 0.99))) +
+            " times as large");
   } else {
     ReportExtent(where, findings);
     ReportLayout(where, findings);
@@ -154,11 +155,11 @@ void KeypointCheck::ReportConfidences(const std::string& where, FindingList* fin
   };
   if (is_one_of({0, 1})) {
     findings->Note("keypoints.flags", where,
-                   "all confidences are 0 or 1: every joint that is seen counts alike");
+                   "all confidences are 0 or 1: all visible joints have the same weight");
   } else if (is_one_of({0, 1, 2})) {
     findings->Warn("keypoints.flags", where,
-                   "all confidences are 0, 1 or 2, as COCO's flags of visibility (1: hidden, 2: "
-                   "seen): hidden joints would count as the seen ones; confidences of 0..1 are "
+                   "all confidences are 0, 1 or 2, like COCO's visibility flags (1: hidden, 2: "
+                   "visible): hidden joints would count like visible ones; confidences of 0..1 are "
                    "wanted");
   }
 }
@@ -170,7 +171,7 @@ void KeypointCheck::ReportExtent(const std::string& where, FindingList* findings
   if (num_people_ < kManyPeople || u > 0.55 || v > 0.55) return;
   findings->Warn("keypoints.extent", where,
                  "all keypoints lie in the upper left " + Percent(u) + " x " + Percent(v) +
-                     " of the image: of an image about " + Brief(std::max(u, v)) +
+                     " of the image: do they belong to an image about " + Brief(std::max(u, v)) +
                      " times as large?");
 }
 
@@ -180,7 +181,7 @@ void KeypointCheck::ReportLayout(const std::string& where, FindingList* findings
     findings->Add(num_outside_ > kUsualOutside * num_points_ ? Severity::kWarning : Severity::kNote,
                   "keypoints.outside", first_outside_,
                   "here first, " + std::to_string(num_outside_) + " of " +
-                      std::to_string(num_points_) + " keypoints lie far outside the image of " +
+                      std::to_string(num_points_) + " keypoints are far outside the image of " +
                       std::to_string(camera_.width) + " x " + std::to_string(camera_.height) +
                       " px");
   }
@@ -200,9 +201,10 @@ void KeypointCheck::ReportLayout(const std::string& where, FindingList* findings
     findings->Fail(
         "keypoints.layout", where,
         "the order of the joints is not COCO-18, it looks like the first 18 of OpenPose's "
-        "BODY_25: joint 8 lies in the middle of 9 and 12 in " +
+        "BODY_25: joint 8 is midway between 9 and 12 in " +
             Percent(1.0 * num_body25_ / num_body25_shapes_) + " of " +
-            std::to_string(num_body25_shapes_) + " people; give all 25, or write them in COCO-18");
+            std::to_string(num_body25_shapes_) +
+            " people; provide all 25, or convert them to COCO-18");
   } else if (num_necks_ >= kMinPeople && necks < 0.5) {
     findings->Fail("keypoints.layout", where,
                    "the order of the joints is not the layout's: " + shape);
@@ -289,9 +291,9 @@ void MaskCheck::Report(const std::string& where, FindingList* findings) const {
   }
   if (num_rippled_ > 0.5 * static_cast<double>(coverages_.size())) {
     findings->Fail("masks.jpeg", first_rippled_,
-                   "here first, the numbers ripple around the edges in " +
-                       std::to_string(num_rippled_) + " of " + std::to_string(coverages_.size()) +
-                       " masks: they were a JPEG once, which smears them; save the masks as PNG at "
+                   "here first, the values ripple around edges in " + std::to_string(num_rippled_) +
+                       " of " + std::to_string(coverages_.size()) +
+                       " masks: they were once JPEG, which blurs them; save the masks as PNG at "
                        "once");
     return;
   }
@@ -309,10 +311,11 @@ std::string MaskCheck::FitText() const {
 bool MaskCheck::ReportInverted(const std::string& where, FindingList* findings) const {
   if (num_points_ < kMinMaskPoints || Quantile(coverages_, 0.5) <= 0.3) return false;
   if (num_inside_ >= 0.8 * chance_ || num_inside_ >= 0.5 * num_points_) return false;
-  findings->Fail("masks.polarity", where,
-                 "fewer keypoints than by chance lie on people: inverted (0 is background), or of "
-                 "other images: " +
-                     FitText());
+  findings->Fail(
+      "masks.polarity", where,
+      "fewer keypoints than by chance are on people: inverted (0 is background), or from "
+      "other images: " +
+          FitText());
   return true;
 }
 
@@ -321,8 +324,8 @@ bool MaskCheck::ReportFull(const std::string& where, FindingList* findings) cons
   if (coverage > kMaxCoverage) {
     findings->Fail("masks.coverage", where,
                    "masks cover " + Percent(coverage) +
-                       " of the image (median): a map where everything has a class, or inverted; 0 "
-                       "is wanted for all that is no person");
+                       " of the image (median): a class map, or inverted; everything "
+                       "that is not a person must be 0");
     return true;
   }
   if (num_full_ > 0) {
@@ -346,8 +349,9 @@ void MaskCheck::ReportFit(const std::string& where, FindingList* findings) const
   if (!has_points && coverage > 0.6) {
     findings->Warn("masks.polarity", where, "people are the minority; inverted? " + text);
   } else if (has_points && Quantile(coverages_, 1) == 0) {
-    findings->Fail("masks.empty", where,
-                   "no mask marks anybody, though there are keypoints of people: is everything 0?");
+    findings->Fail(
+        "masks.empty", where,
+        "no mask marks anybody, although there are keypoints of people: is everything 0?");
   } else if (has_points && inside < 0.5 && inside_scaled > 0.65 && inside_scaled > 2 * coverage) {
     findings->Fail("keypoints.resolution", where,
                    "the keypoints fit the masks (" + Percent(inside_scaled) +
@@ -375,8 +379,8 @@ void MaskCheck::ReportClasses(const std::string& where, FindingList* findings) c
   if (area_without < kMaxWithout) return;
   findings->Warn("masks.classes", where,
                  "the numbers " + names + " mark " + Percent(area_without) +
-                     " of the image, but hardly any keypoint: a map of classes? Only people (and "
-                     "what else moves) may be marked");
+                     " of the image, but hardly any keypoint: a class map? Only people (and "
+                     "anything else that moves) may be marked");
 }
 
 }  // namespace airdos

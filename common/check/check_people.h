@@ -80,6 +80,7 @@ class MaskCheck {
   std::string first_full_;
   int num_rippled_ = 0;
   std::string first_rippled_;
+  /// What is known about one value in the masks.
   struct Value {
     double area = 0;  // sum of its shares of the masks
     int num_points = 0;

@@ -104,7 +104,7 @@ bool CheckShift(const CheckedInput& input, std::size_t num_places, FindingList* 
           (shift > 0 ? " late" : " early") + ": " + example->where_left + " fits " +
           FitText(*example, best) + " better than " + FitText(*example, kMaxShift) + "; in " +
           std::to_string(votes[best]) + " of " + std::to_string(places.size()) +
-          " places where the camera moves; were the recorders started apart?");
+          " places where the camera moves; were the recorders started separately?");
   return true;
 }
 

@@ -86,7 +86,7 @@ void StereoCheck::ReportRows(const std::string& where, FindingList* findings) co
   for (const double error_px : row_errors_px_) absolute_px.push_back(std::abs(error_px));
   const double median_px = row_error_px();
   const std::string rows = "rows of matches differ by " + Brief(median_px) + " px (median), " +
-                           Brief(Quantile(absolute_px, 0.9)) + " px (90 %), on the whole by " +
+                           Brief(Quantile(absolute_px, 0.9)) + " px (90 %), overall by " +
                            Brief(Quantile(row_errors_px_, 0.5)) + " px";
   // The frontend searches for a corner within 1.5 px of its row.
   if (median_px > 1.5) {

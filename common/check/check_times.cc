@@ -21,7 +21,7 @@ std::string OtherUnit(double period_s) {
 
 void CheckRate(double period_s, const std::string& where, FindingList* findings) {
   if (period_s >= kMinPeriod_s && period_s <= kMaxPeriod_s) {
-    findings->Note("times.rate", where, Brief(1 / period_s) + " images a second");
+    findings->Note("times.rate", where, Brief(1 / period_s) + " images per second");
     return;
   }
   const std::string interval = "the median interval is " + Brief(period_s) + " s";
@@ -50,8 +50,8 @@ void CheckOrder(const std::vector<std::int64_t>& utimes, const std::string& wher
     findings->Fail(
         "times.order", where,
         "image " + std::to_string(i) +
-            (interval_s == 0 ? " has the time of the one before"
-                             : " comes " + Brief(-interval_s) + " s before the one before it"));
+            (interval_s == 0 ? " has the same time as the previous one"
+                             : " comes " + Brief(-interval_s) + " s before the previous one"));
   }
 }
 

@@ -55,8 +55,9 @@ std::string ExplainJson(const std::string& text, std::size_t byte) {
   }
   if (static_cast<unsigned char>(text[byte]) >= 0xFE) return "this is UTF-16, not UTF-8";
   const unsigned char c = static_cast<unsigned char>(text[byte]);
-  return c < 0x20 || c >= 0x7f ? "is no JSON here"
-                               : std::string("is no JSON at the character '") + text[byte] + "'";
+  return c < 0x20 || c >= 0x7f
+             ? "this is not JSON"
+             : std::string("this is not JSON at the character '") + text[byte] + "'";
 }
 
 nlohmann::json ParseJson(const std::string& path) {
@@ -68,14 +69,14 @@ nlohmann::json ParseJson(const std::string& path) {
   try {
     nlohmann::json json = nlohmann::json::parse(text);
     if (!json.is_object()) {
-      throw InputError(path + ": is no JSON object; wanted is " + kCalibJsonForm);
+      throw InputError(path + ": is not a JSON object; expected is " + kCalibJsonForm);
     }
     return json;
   } catch (const nlohmann::json::parse_error& error) {
     const std::size_t byte = error.byte > 0 ? error.byte - 1 : 0;
     const auto [line, column] = PlaceOf(text, byte);
     throw InputError(path + ":" + line + ": " + column + ": " + ExplainJson(text, byte) +
-                     "; wanted is " + kCalibJsonForm);
+                     "; expected is " + kCalibJsonForm);
   } catch (const nlohmann::json::exception&) {
     throw InputError(path + ": holds a number that is too large");
   }
@@ -140,7 +141,7 @@ std::string MeantBy(const std::string& key) {
 std::string DidYouMean(const nlohmann::json& json, const std::string& key) {
   for (const auto& item : json.items()) {
     if (item.key() != key && MeantBy(item.key()) == key) {
-      return "; '" + item.key() + "' is there: it is written '" + key + "'";
+      return "; '" + item.key() + "' is there: it is spelt '" + key + "'";
     }
   }
   return "";
@@ -150,7 +151,7 @@ double ReadNumber(const nlohmann::json& json, const std::string& path, const std
   if (!json.contains(key)) {
     const std::string meant = DidYouMean(json, key);
     throw InputError(path + ": key '" + key + "' is missing" +
-                     (meant.empty() ? std::string("; wanted is ") + kCalibJsonForm : meant));
+                     (meant.empty() ? std::string("; expected is ") + kCalibJsonForm : meant));
   }
   if (!json[key].is_number()) {
     // The value may be nested too deeply for dump().
@@ -199,8 +200,9 @@ StereoCamera ReadCalibJson(const std::string& path, std::pair<int, int> size) {
   camera.cy_px = ReadNumber(json, path, "cy");
   camera.baseline_m = ReadNumber(json, path, "baseline_m");
   if (!camera.IsValid()) {
-    throw InputError(path + ": no pinhole pair for images of " + std::to_string(camera.width) +
-                     " x " + std::to_string(camera.height) + " px: " + WhyNoCamera(camera));
+    throw InputError(path + ": not a pinhole stereo camera for images of " +
+                     std::to_string(camera.width) + " x " + std::to_string(camera.height) +
+                     " px: " + WhyNoCamera(camera));
   }
   return camera;
 }

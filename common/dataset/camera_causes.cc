@@ -28,7 +28,7 @@ std::string WhyNoPrincipalPoint(const StereoCamera& camera) {
   if (IsPrincipalPointSwapped(camera)) return point + "; cx and cy are exchanged";
   const std::optional<double> factor = ResolutionFactor(camera);
   if (factor) {
-    return point + "; it is that of images " + TimesAsLarge(*factor) + ": divide fx, fy, cx and " +
+    return point + "; it belongs to images " + TimesAsLarge(*factor) + ": divide fx, fy, cx and " +
            "cy by " + Brief(*factor);
   }
   return point;

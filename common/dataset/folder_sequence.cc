@@ -45,7 +45,7 @@ void AssumeTimes(const std::string& path, FolderSequence::Contents* contents) {
     has_gaps = has_gaps || by_number != in_order;
     contents->utimes.push_back(by_number);
   }
-  contents->notes.push_back(path + " is not there: the images are taken to be 0.1 s apart" +
+  contents->notes.push_back(path + " is not there: the images are assumed to be 0.1 s apart" +
                             (has_gaps ? ", more where numbers are missing" : ""));
 }
 
@@ -72,9 +72,9 @@ void RefuseOtherMask(const std::string& png) {
                              ".tiff", ".gif", ".webp", ".pgm", ".exr"}) {
     const std::string other = fs::path(png).replace_extension(ending).string();
     if (!fs::exists(other)) continue;
-    throw InputError(other + ": masks are read as .png only, this one would be passed over; " +
+    throw InputError(other + ": masks are read from .png only, so this one would be ignored; " +
                      (std::string(ending).find("j") == 1 || std::string(ending) == ".JPG"
-                          ? "JPEG smears their numbers: "
+                          ? "JPEG blurs their values: "
                           : "") +
                      "save them as PNG, 0 for the background, or move the folder away");
   }

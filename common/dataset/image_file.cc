@@ -26,9 +26,9 @@ std::string WhyHeaderIsNone(const std::uint8_t* data, std::size_t size) {
 
 std::string WhyHeaderIsUnfit(const ImageHeader& header) {
   if (header.is_png) return "";
-  if (header.num_channels == 4) return "is a JPEG in CMYK (for printers); grey or RGB is wanted";
+  if (header.num_channels == 4) return "is a JPEG in CMYK (for printers); grey or RGB is expected";
   if (header.bits != 8) {
-    return "is a JPEG with " + std::to_string(header.bits) + " bits a sample; 8 are wanted";
+    return "is a JPEG with " + std::to_string(header.bits) + " bits per sample; 8 are expected";
   }
   return "";
 }
@@ -41,7 +41,7 @@ cv::Mat Decode(const std::vector<std::uint8_t>& file, const std::string& name, i
     image.release();
   }
   if (image.empty()) {
-    throw InputError(name + ": cannot be decoded as an image (are bytes of it damaged?)");
+    throw InputError(name + ": cannot be decoded as an image (is it damaged?)");
   }
   return image;
 }
@@ -198,7 +198,7 @@ std::string SizeMismatchText(std::int64_t width, std::int64_t height, const std:
   const double factor = static_cast<double>(width) / static_cast<double>(wanted_width);
   const double factor_y = static_cast<double>(height) / static_cast<double>(wanted_height);
   if (width == wanted_height && height == wanted_width) return text + ": turned by 90 degrees";
-  if (std::abs(factor / factor_y - 1) > 0.02) return text + ": of other proportions";
+  if (std::abs(factor / factor_y - 1) > 0.02) return text + ": with another aspect ratio";
   char number[32];
   std::snprintf(number, sizeof(number), "%.3g", factor);
   return text + ": " + number + " times as large";

@@ -49,15 +49,15 @@ void CheckIsOneSeries(const std::string& folder, const std::vector<NameSeries>& 
   for (const NameSeries& one : series) num_names += one.names.size();
   if (series.size() > 2 && 2 * first.names.size() < num_names) {
     throw InputError(folder + ": its images cannot be ordered: their names, such as " + names +
-                     ", have no common form; rename them to 000000.png, 000001.png, ...");
+                     ", have no common pattern; rename them to 000000.png, 000001.png, ...");
   }
   const bool is_rival = second.names.size() > 1 && 4 * second.names.size() >= first.names.size();
   const bool are_two = first.names.size() == 1 && !second.names[0].numbers.empty();
   if (is_rival || are_two) {
-    throw InputError(folder + ": holds images of two forms of names, " + names + " (" +
+    throw InputError(folder + ": contains images with two kinds of names, " + names + " (" +
                      std::to_string(first.names.size()) + " and " +
                      std::to_string(second.names.size()) +
-                     "): take those that are not of this sequence out of the folder");
+                     "): remove those that do not belong to this sequence");
   }
 }
 
@@ -73,8 +73,8 @@ void CheckAreUnique(const std::string& folder, const NameSeries& series) {
   for (const FileName& name : series.names) {
     const auto [it, is_new] = seen.emplace(series.KeyOf(name), name.name);
     if (!is_new) {
-      throw InputError(folder + ": two files of one image, '" + it->second + "' and '" + name.name +
-                       "': take one of them out of the folder");
+      throw InputError(folder + ": two files for the same image, '" + it->second + "' and '" +
+                       name.name + "': remove one of them");
     }
   }
 }
@@ -145,8 +145,8 @@ ImageNames ListImages(const std::string& folder) {
     series = Unnumbered(names);
     if (names.size() > 1) {
       result.notes.push_back(folder +
-                             ": its names have no numbers: the images are taken in order "
-                             "of text, from '" +
+                             ": its names have no numbers: the images are used in "
+                             "alphabetical order, from '" +
                              names.front() + "' to '" + names.back() + "'");
     }
   } else {
@@ -164,9 +164,9 @@ ImageNames ListImages(const std::string& folder) {
   result.numbers =
       WholeNumbers(result.keys, series.counting >= 0 && !series.names[0].numbers.empty());
   if (!strays.empty()) {
-    result.notes.push_back(
-        folder + ": " + FirstFew(strays) + (strays.size() == 1 ? " is" : " are") +
-        " not named like the other images ('" + result.files[0] + "'): not taken");
+    result.notes.push_back(folder + ": " + FirstFew(strays) +
+                           (strays.size() == 1 ? " is" : " are") +
+                           " not named like the other images ('" + result.files[0] + "'): skipped");
   }
   return result;
 }
@@ -182,10 +182,10 @@ void CheckPairs(const ImageNames& left, const ImageNames& right) {
   if (!left_alone.empty()) alone += "; only on the left: " + FirstFew(left_alone);
   if (!right_alone.empty()) alone += "; only on the right: " + FirstFew(right_alone);
   if (left.files.size() == right.files.size() && TimesFromNames(left) && TimesFromNames(right)) {
-    alone += "; the names are times of each camera: name the images of a pair alike";
+    alone += "; the names are times of each camera: give both images of a pair the same name";
   }
-  throw InputError(counts + ", and not all have a partner of the same number" + alone +
-                   "; take these out or add their partners");
+  throw InputError(counts + ", and not all have a partner with the same number" + alone +
+                   "; remove these or add their partners");
 }
 
 std::vector<std::string> FindPartners(const std::string& folder, const std::string& ending,

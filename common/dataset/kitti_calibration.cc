@@ -36,9 +36,9 @@ StereoCamera MakeStereoCamera(const std::string& path, const KittiProjection& le
   camera.cy_px = left.p[6];
   camera.baseline_m = (left.p[3] - right.p[3]) / left.p[0];
   if (!camera.IsValid()) {
-    throw InputError(where + ": no pinhole pair for images of " + std::to_string(camera.width) +
-                     " x " + std::to_string(camera.height) + " px (focal length " +
-                     std::to_string(camera.fx_px) + " px, baseline " +
+    throw InputError(where + ": not a pinhole stereo camera for images of " +
+                     std::to_string(camera.width) + " x " + std::to_string(camera.height) +
+                     " px (focal length " + std::to_string(camera.fx_px) + " px, baseline " +
                      std::to_string(camera.baseline_m) + " m): " + WhyNoCamera(camera));
   }
   return camera;

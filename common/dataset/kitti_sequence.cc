@@ -80,7 +80,7 @@ void CheckImageFolders(const std::string& folder, const FolderSequence::Contents
         "and P2: and P3: in calib.txt P0: and P1:";
   } else if (fs::is_directory(folder + "/image_00/data")) {
     remedy =
-        "; image_00/data is (KITTI raw): make image_0 and image_1 of image_00/data and "
+        "; image_00/data is (KITTI raw): make image_0 and image_1 from image_00/data and "
         "image_01/data";
   }
   throw InputError(folder + ": has a calib.txt, but " + contents.left_folder + " and " +

@@ -64,7 +64,7 @@ class CalibrationFile {
     }
     constexpr double kRoundingOfFiles = 1e-2;
     if (!(R * R.transpose()).isIdentity(kRoundingOfFiles) || R.determinant() < 0) {
-      throw InputError(where + ": is no rotation");
+      throw InputError(where + ": is not a rotation");
     }
     motion.rotation = Eigen::Quaterniond(R).normalized();
     return motion;

@@ -115,7 +115,7 @@ cv::Mat LargestSamples(const PngSamples& png, const ImageHeader& header, int typ
   return values;
 }
 
-constexpr char kWanted[] = "; masks are wanted as PNG with 0 for the background";
+constexpr char kWanted[] = "; masks must be PNG with 0 for the background";
 
 std::string KindOf(const ImageHeader& header) {
   if (header.is_palette) return "palette";
@@ -133,7 +133,7 @@ std::string WhyNoMask(const std::uint8_t* data, std::size_t size) {
   const std::string kind = FileKindOf(data, size);
   if (kind == "empty") return "is empty";
   if (kind == "a JPEG file") {
-    return std::string("is a JPEG file, which smears the numbers of a mask") + kWanted;
+    return std::string("is a JPEG file, which blurs the values of a mask") + kWanted;
   }
   if (kind != "a PNG file") return "is " + kind + kWanted;
   const std::string why = WhyNoPicture(data, size);
@@ -142,7 +142,7 @@ std::string WhyNoMask(const std::uint8_t* data, std::size_t size) {
   if (header->has_alpha()) {
     return std::string("has an alpha channel (") +
            (header->num_channels == 4 ? "RGBA" : "grey and alpha") +
-           "), so it does not say which of its channels is the mask; save it without alpha, 0 for "
+           "), so it is not clear which of its channels is the mask; save it without alpha, 0 for "
            "the background";
   }
   return "";
@@ -154,7 +154,7 @@ PersonMask DecodePersonMask(const std::uint8_t* data, std::size_t size, const st
   const ImageHeader header = *ReadImageHeader(data, size);
   PngSamples png;
   if (!DecodePng(data, size, header, &png)) {
-    throw InputError(name + ": cannot be decoded as a mask (are bytes of it damaged?)");
+    throw InputError(name + ": cannot be decoded as a mask (is it damaged?)");
   }
   PersonMask mask;
   mask.kind = KindOf(header);

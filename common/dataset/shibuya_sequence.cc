@@ -38,7 +38,7 @@ void FillCamera(const SequenceOptions& options, FolderSequence::Contents* conten
   if (options.calibration.empty()) {
     if (!fs::exists(path)) {
       throw InputError(path + ": is not there; write " + kCalibJsonForm +
-                       ", or ask for the camera of the public set with --calibration " +
+                       ", or select the camera of the public data set with --calibration " +
                        kPublicCalibration);
     }
     contents->camera = ReadCalibJson(path, size);
@@ -47,12 +47,13 @@ void FillCamera(const SequenceOptions& options, FolderSequence::Contents* conten
   contents->camera = PublicCamera();
   if (size != std::make_pair(contents->camera.width, contents->camera.height)) {
     throw InputError(first_image + ": with " + std::to_string(size.first) + " x " +
-                     std::to_string(size.second) + " px is not of the public set (640 x 360), " +
-                     "whose calibration '" + options.calibration + "' was asked for");
+                     std::to_string(size.second) +
+                     " px is not that of the public data set (640 x 360), " +
+                     "whose calibration '" + options.calibration + "' was selected");
   }
   if (fs::exists(path)) {
     contents->notes.push_back(path + ": is not used, as calibration '" + options.calibration +
-                              "' was asked for");
+                              "' was selected");
   }
 }
 
@@ -67,7 +68,7 @@ std::string ExplainPoseLine(const TextLine& line) {
   const std::string separators = ExplainSeparators(line);
   const auto num_commas = std::count(line.words[0].begin(), line.words[0].end(), ',');
   if (num_commas >= 7) {
-    return "; this is csv, as EuRoC's state_groundtruth has it (ns, position, q_w first): awk -F, "
+    return "; this is CSV as in EuRoC's state_groundtruth (ns, position, q_w first): awk -F, "
            "'!/^#/{printf \"%.6f %s %s %s %s %s %s %s\\n\",$1*1e-9,$2,$3,$4,$6,$7,$8,$5}' makes "
            "the rows";
   }
@@ -101,11 +102,11 @@ TimedPose ParsePose(const std::string& path, const TextLine& line) {
     const std::string unit = OtherTimeUnit(numbers[0], 0);
     if (!unit.empty()) {
       throw InputError(where + WrongTimeUnit(unit, "'" + line.words[0] + "'") +
-                       " (EuRoC has q_w first, too: wanted is qx qy qz qw)");
+                       " (EuRoC has q_w first, too: expected is qx qy qz qw)");
     }
     std::int64_t utime = 0;
     if (!ParseMicroseconds(line.words[0], &utime)) {
-      throw InputError(where + ": '" + line.words[0] + "' is no time in s");
+      throw InputError(where + ": '" + line.words[0] + "' is not a time in s");
     }
     row.utime = utime;
   }
@@ -165,7 +166,7 @@ void FillGroundTruth(FolderSequence::Contents* contents) {
   if (!fs::exists(path)) return;
   const std::vector<TimedPose> rows = ReadPoses(path);
   if (rows.empty()) {
-    contents->notes.push_back(path + ": holds no pose");
+    contents->notes.push_back(path + ": contains no pose");
     return;
   }
   std::vector<Se3> poses;

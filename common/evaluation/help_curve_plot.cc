@@ -43,7 +43,7 @@ void AddMode(const HelpCurve& curve, RunFigure run_figure, bool is_on, const ToA
 
 Chart MakeChart(const HelpCurve& curve, RunFigure figure, const ToAxis& to_axis) {
   Chart chart;
-  chart.x_label = "static features a frame, at most";
+  chart.x_label = "static features per frame, at most";
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
     const auto& cap = curve.points[i].cap;
     chart.x_ticks.push_back({static_cast<double>(i), cap ? std::to_string(*cap) : "uncapped"});

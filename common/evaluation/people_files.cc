@@ -23,7 +23,7 @@ Joints ParseJoints(const json& object) {
   Joints joints;
   for (const auto& [key, place] : object.items()) {
     const int id = std::stoi(key);
-    if (id < 0) throw InputError("'" + key + "' is no joint");
+    if (id < 0) throw InputError("'" + key + "' is not a joint");
     if (id >= kNumJoints) continue;  // a point of the face
     joints[id] = Eigen::Vector3d(place.at(0).get<double>(), place.at(1).get<double>(),
                                  place.at(2).get<double>());
@@ -43,12 +43,12 @@ std::string ReadUnpacked(const std::string& path) {
     text.append(buffer, static_cast<std::size_t>(size));
     if (text.size() > kMaxUnpackedBytes) {
       gzclose(file);
-      throw InputError(path + ": unpacks to more than " + std::to_string(kMaxUnpackedBytes) +
+      throw InputError(path + ": decompresses to more than " + std::to_string(kMaxUnpackedBytes) +
                        " bytes");
     }
   }
   gzclose(file);
-  if (size < 0) throw InputError(path + ": cannot be unpacked");
+  if (size < 0) throw InputError(path + ": cannot be decompressed");
   return text;
 }
 
@@ -77,7 +77,8 @@ std::vector<PersonState> ReadPeople(const std::string& path) {
       state.measured_W = ParseJoints(object.at("measured"));
       for (const auto& [key, length_m] : object.at("segment_lengths_m").items()) {
         const int segment = std::stoi(key);
-        if (segment < 0 || segment >= kNumSegments) throw InputError("'" + key + "' is no segment");
+        if (segment < 0 || segment >= kNumSegments)
+          throw InputError("'" + key + "' is not a segment");
         state.segment_length_m[segment] = length_m;
       }
       states.push_back(std::move(state));

@@ -82,7 +82,7 @@ std::string ToTable(const PeopleReport& r) {
       r.num_to_be_seen, r.num_seen);
   const double num_people = std::max(r.identity.num_people, 1);
   text +=
-      Format("identity: %d switches, %.2f a person; IDF1 %.3f (precision %.3f, recall %.3f)\n\n",
+      Format("identity: %d switches, %.2f per person; IDF1 %.3f (precision %.3f, recall %.3f)\n\n",
              r.identity.num_switches, r.identity.num_switches / num_people, r.identity.idf1,
              r.identity.id_precision, r.identity.id_recall);
   text += Format("  %-24s %8s %9s %9s %8s %9s %9s %8s\n", "error of the joints (m)", "joints",
@@ -91,7 +91,7 @@ std::string ToTable(const PeopleReport& r) {
   for (std::size_t i = 0; i < kNumDepthBands; ++i) {
     text += JointRow(kDepthBandNames[i], r.joint_errors_by_depth[i]);
   }
-  text += Format("\n  %-24s %8s %9s %9s %9s %9s\n", "error of lengths (%)", "lengths", "median",
+  text += Format("\n  %-24s %8s %9s %9s %9s %9s\n", "error of the lengths (%)", "lengths", "median",
                  "mean", "bias", "within 5");
   text += LengthRow("all segments", r.lengths);
   for (std::size_t i = 0; i < kNumDepthBands; ++i) {

@@ -55,7 +55,7 @@ Chart GrowthChart(const std::vector<SolveTime>& solves, int SolveTime::*figure) 
 
 Chart ProcessChart(const std::vector<ChainSpeed>& chains) {
   Chart chart;
-  chart.title = "CPU a frame, median, by sequence";
+  chart.title = "CPU per frame, median, by sequence";
   chart.x_label = "sequence, in the table's order";
   chart.y_label = "ms";
   chart.starts_at_zero = true;

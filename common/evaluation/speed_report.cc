@@ -149,7 +149,7 @@ std::string SolveTable(const std::vector<SolveTime>& solves, bool is_paper) {
   std::string text = is_paper ? "\n| paper's problem |" : "\n| people | window | start |";
   std::string rule = is_paper ? "|---|" : "|---|---|---|";
   for (const std::string& solver : solvers) {
-    text += " " + solver + ": ms, ms an iteration |";
+    text += " " + solver + ": ms, ms per iteration |";
     rule += "---|";
   }
   text += "\n" + rule + "\n";
@@ -199,7 +199,7 @@ std::vector<SolveTime> ReadSolveTimes(const std::string& path) {
   } catch (const InputError& error) {
     throw InputError(path + ": " + error.what());
   } catch (const std::exception& error) {  // from the JSON, or from a number in a name
-    throw InputError(path + ": is no report of Google Benchmark: " + error.what());
+    throw InputError(path + ": is not a Google Benchmark report: " + error.what());
   }
   return solves;
 }

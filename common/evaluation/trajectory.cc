@@ -25,7 +25,7 @@ void CheckRowsAgree(const Trajectory& estimate, const Trajectory& ground_truth) 
   throw InputError(
       NameOf("estimate", estimate) + ": has " + std::to_string(estimate.num_rows()) + " rows, " +
       NameOf("ground truth", ground_truth) + " has " + std::to_string(ground_truth.num_rows()) +
-      ": without times row k belongs to row k only where the counts agree; give a trajectory with "
+      ": without times row k belongs to row k only if the counts agree; provide a trajectory with "
       "times (TUM), the times of each with --times, or rows of nan for the frames without a pose");
 }
 

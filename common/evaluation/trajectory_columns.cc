@@ -172,7 +172,7 @@ bool EndsWithRow0001(const std::vector<std::string>& fields) {
 }
 
 std::string WhatIsRead() {
-  return "wanted are 8 (t x y z qx qy qz qw, TUM), 12 (KITTI), 17 (EuRoC's state_groundtruth), 7 "
+  return "expected are 8 (t x y z qx qy qz qw, TUM), 12 (KITTI), 17 (EuRoC's state_groundtruth), 7 "
          "(x y z qx qy qz qw, TartanAir) or 4 (t x y z)";
 }
 
@@ -202,7 +202,7 @@ std::vector<std::string> SplitFields(const TextLine& line, const std::string& wh
   const auto num_decimal = std::count_if(fields.begin(), fields.end(), HasDecimalComma);
   if (fields.size() >= 4 && 2 * static_cast<std::size_t>(num_decimal) >= fields.size()) {
     throw InputError(where + "'" + fields[0] +
-                     "': numbers have commas where points belong; write points (sed 's/,/./g')");
+                     "': numbers have decimal commas; use points (sed 's/,/./g')");
   }
   if (!has_semicolons && text.find(',') != std::string::npos) fields = SplitAt(',', text);
   // "..., 1," ends with a separator, whereas ",,,," contains no pose.
@@ -243,7 +243,7 @@ TrajectoryColumns FindColumns(const std::string& where, const std::string& headi
     columns.form = "4 numbers in a row: a time and a position";
   } else {
     const bool is_numbered_matrix = n == 13 || n == 17;
-    throw InputError(where + "holds " + std::to_string(n) + " numbers a row" +
+    throw InputError(where + "holds " + std::to_string(n) + " numbers per row" +
                      (is_numbered_matrix ? " (a number or time before a matrix, as KITTI-360 has "
                                            "it? cut it off with cut -d' ' -f2- and give --times)"
                                          : "") +

@@ -87,7 +87,7 @@ MatchedTrajectories MatchPoses(const Trajectory& estimate, const Trajectory& gro
                                             CountRepeatedPartners(matched.ground_truth));
   if (num_repeated > 0) {
     remarks->push_back({true, std::to_string(num_repeated) +
-                                  " poses are compared with one that was compared already: "
+                                  " poses are matched with one that is already matched: "
                                   "--max-diff is larger than the interval, or times repeat"});
   }
   return matched;

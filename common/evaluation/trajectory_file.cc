@@ -81,7 +81,7 @@ void ReadMatrix(const std::vector<std::string>& fields, const std::string& where
   constexpr double kRoundingOfFiles = 1e-2;
   if (!(pose.rotation * pose.rotation.transpose()).isIdentity(kRoundingOfFiles) ||
       pose.rotation.determinant() < 0) {
-    throw InputError(where + "columns 1-3, 5-7 and 9-11 are no rotation");
+    throw InputError(where + "columns 1-3, 5-7 and 9-11 are not a rotation");
   }
 }
 
@@ -111,12 +111,12 @@ void CheckIsRows(const std::string& path, const TextLine& first) {
   const std::string& word = first.words[0];
   const std::string where = Where(path, first.number);
   if (word[0] == '{' || word[0] == '[') {
-    throw InputError(where + "is JSON, wanted are rows of numbers (TUM: t x y z qx qy qz qw)");
+    throw InputError(where + "is JSON; expected are rows of numbers (TUM: t x y z qx qy qz qw)");
   }
   const auto is_control = [](unsigned char c) { return c < 0x20; };
   if (std::any_of(word.begin(), word.end(), is_control)) {
     throw InputError(where +
-                     "is no text file, wanted are rows of numbers (TUM: t x y z qx qy qz "
+                     "is not a text file; expected are rows of numbers (TUM: t x y z qx qy qz "
                      "qw; airdos-map export writes one)");
   }
 }
@@ -124,7 +124,7 @@ void CheckIsRows(const std::string& path, const TextLine& first) {
 std::vector<Row> ReadRows(const std::string& path, TrajectoryColumns* columns) {
   std::string heading;
   std::vector<TextLine> lines = ReadTextLines(path, &heading);
-  if (lines.empty()) throw InputError(path + ": holds no pose");
+  if (lines.empty()) throw InputError(path + ": contains no pose");
   CheckIsRows(path, lines[0]);
   std::size_t first = 0;
   const std::vector<std::string> names = SplitFields(lines[0], Where(path, lines[0].number));
@@ -142,12 +142,12 @@ std::vector<Row> ReadRows(const std::string& path, TrajectoryColumns* columns) {
     if (i == first) *columns = FindColumns(where, heading, fields, has_commas);
     if (fields.size() != columns->num_columns) {
       throw InputError(where + "must hold " + std::to_string(columns->num_columns) +
-                       " numbers as the rows above, holds " + std::to_string(fields.size()));
+                       " numbers like the rows above, holds " + std::to_string(fields.size()));
     }
     rows.push_back(ReadRow(fields, *columns, where));
     rows.back().line = lines[i].number;
   }
-  if (rows.empty()) throw InputError(path + ": holds no pose");
+  if (rows.empty()) throw InputError(path + ": contains no pose");
   return rows;
 }
 
@@ -242,7 +242,7 @@ void RemarkOnForm(const TrajectoryColumns& columns, const std::vector<Row>& rows
     trajectory->remarks.push_back(
         {true, Where(trajectory->path, row.line) + "the quaternion is of length " +
                    std::to_string(row.quaternion_length) +
-                   ", made 1: written with few digits? Rotation figures suffer from it"});
+                   ", normalised: written with few digits? This affects rotation figures"});
     return;
   }
 }
@@ -271,7 +271,7 @@ Trajectory ReadTrajectory(const std::string& path) {
     trajectory.poses.push_back(rows[i].pose);
     trajectory.poses.back().time_s = times_s[i];
   }
-  if (trajectory.poses.empty()) throw InputError(path + ": holds no pose");
+  if (trajectory.poses.empty()) throw InputError(path + ": contains no pose");
   return trajectory;
 }
 
@@ -282,7 +282,7 @@ void SetTimes(const std::string& times_path, Trajectory* trajectory) {
     const bool is_later = times.empty() || numbers[0] > times.back().time;
     if (numbers.size() != 1 || !is_later) {
       throw InputError(Where(times_path, line.number) +
-                       "must hold one time (s), later than the one before");
+                       "must hold one time (s), later than the previous one");
     }
     times.push_back({numbers[0], line.number});
   }
@@ -290,7 +290,7 @@ void SetTimes(const std::string& times_path, Trajectory* trajectory) {
     throw InputError(times_path + ": holds " + std::to_string(times.size()) + " times, " +
                      NameOf("trajectory", *trajectory) + " has " +
                      std::to_string(trajectory->num_rows()) +
-                     " rows: one time for each row is needed; give it rows of nan for the frames "
+                     " rows: one time per row is needed; add rows of nan for the frames "
                      "without a pose, or the times of its rows");
   }
   const std::vector<double> times_s = TimesInSeconds(times_path, times, &trajectory->remarks);
@@ -303,7 +303,7 @@ void SetTimes(const std::string& times_path, Trajectory* trajectory) {
 void SetTimesOfPair(const std::string& times_path, Trajectory* estimate, Trajectory* ground_truth) {
   if (estimate->has_times && ground_truth->has_times) {
     throw InputError(times_path + ": is not needed, " + NameOf("estimate", *estimate) + " and " +
-                     NameOf("ground truth", *ground_truth) + " have times; leave --times out");
+                     NameOf("ground truth", *ground_truth) + " have times; omit --times");
   }
   const bool is_for_both = !estimate->has_times && !ground_truth->has_times;
   if (is_for_both && estimate->num_rows() != ground_truth->num_rows()) {
@@ -318,7 +318,7 @@ void SetTimesOfPair(const std::string& times_path, Trajectory* estimate, Traject
         ": " + NameOf("estimate", *estimate) + " has " + std::to_string(estimate->num_rows()) +
         " rows, " + NameOf("ground truth", *ground_truth) + " " +
         std::to_string(ground_truth->num_rows()) +
-        "; give the shorter one as TUM with times, or with rows of nan for the frames without a "
+        "; provide the shorter one as TUM with times, or with rows of nan for the frames without a "
         "pose");
   }
   if (!estimate->has_times) SetTimes(times_path, estimate);

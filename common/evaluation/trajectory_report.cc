@@ -45,8 +45,8 @@ void FindRotations(const Trajectory& estimate, const Trajectory& ground_truth,
       std::string("the ") + (has_truth_none ? "ground truth" : "estimate") + " has positions only";
   report->remarks.push_back(
       {true, name + ": holds positions only (no rotation, or the same in all rows while the other "
-                    "file's turn): figures of rotations and relative poses are not given, of axes "
-                    "nothing is known"});
+                    "file's turn): rotation and relative pose figures are omitted, and the axes "
+                    "are unknown"});
 }
 
 std::string Describe(const PoseReading& reading, const TrajectoryReport& report) {
@@ -81,17 +81,16 @@ void DecideReading(const Trajectory& estimate, const Trajectory& ground_truth,
   const PoseReading& reading = doubt->reading;
   const std::string evidence = "motions of both agree by " + Decimals("%.3f", doubt->agreement) +
                                " with " + Describe(reading, *report) + ", by " +
-                               Decimals("%.3f", doubt->agreement_as_read) + " as they stand";
+                               Decimals("%.3f", doubt->agreement_as_read) + " as read";
   if (reading.is_estimate_inverted || reading.is_truth_inverted) {
     const bool is_stated = options.is_estimate_inverted || options.is_truth_inverted;
     throw InputError(
         (reading.is_estimate_inverted ? NameOf("estimate", estimate)
                                       : NameOf("ground truth", ground_truth)) +
-        ": looks like inverted poses (T_C_W, as ORB-SLAM's Tcw, where T_W_C is wanted): " +
-        evidence +
+        ": looks like inverted poses (T_C_W, like ORB-SLAM's Tcw; T_W_C is expected): " + evidence +
         (doubt->do_both_inversions_fit ? ", and as well with the ground truth inverted" : "") +
-        (is_stated ? "; leave --inverted out, or name the other file"
-                   : std::string("; give --inverted ") +
+        (is_stated ? "; omit --inverted, or name the other file"
+                   : std::string("; use --inverted ") +
                          (reading.is_estimate_inverted ? "estimate" : "ground-truth")));
   }
   *matched = ReadAs(reading, estimate.order, ground_truth.order, std::move(*matched));
@@ -99,13 +98,13 @@ void DecideReading(const Trajectory& estimate, const Trajectory& ground_truth,
       {true, (reading.has_other_order_in_truth ? NameOf("ground truth", ground_truth)
                                                : NameOf("estimate", estimate)) +
                  ": its quaternions look like another order: " + evidence +
-                 "; the figures are of that reading, write TUM files with x y z w"});
+                 "; the figures are for that reading; write TUM files with x y z w"});
 }
 
 /// Sets the axes when rotations do not determine them: as given, or as they are.
 void KeepAxes(const EvaluationOptions& options, const std::string& why, TrajectoryReport* report) {
   report->axes = options.axes.value_or(GroundTruthAxes::Optical());
-  report->axes_reason = std::string(options.axes ? "as given; " : "not looked for: ") + why;
+  report->axes_reason = std::string(options.axes ? "as given; " : "not determined: ") + why;
 }
 
 void CheckGivenAxes(const MatchedTrajectories& matched, const AxesDecision& decision,
@@ -118,7 +117,7 @@ void CheckGivenAxes(const MatchedTrajectories& matched, const AxesDecision& deci
                  ": motions of both agree by " + Decimals("%.3f", agreement) +
                  " only in them, by " + Decimals("%.3f", decision.agreement) + " if they are " +
                  decision.axes.Name() +
-                 ": figures of rotations and relative poses are wrong if the axes are"});
+                 ": rotation and relative pose figures are wrong if the axes are"});
 }
 
 /// If the positions fit but the motions in body axes do not, the rotations of one file are wrong.
@@ -132,9 +131,9 @@ bool CheckContradiction(const MatchedTrajectories& matched, const AxesDecision& 
   report->remarks.push_back(
       {true, "contradiction: the positions fit, but motions in body axes agree by " +
                  Decimals("%.3f", decision.best_agreement) +
-                 " only (1 = same): the rotations of one file are wrong or those of another body "
-                 "(order of the quaternion, an IMU's instead of the camera's?); do not believe "
-                 "figures of rotations and relative poses"});
+                 " only (1 = same): the rotations of one file are wrong or belong to another body "
+                 "(order of the quaternion, an IMU instead of the camera?); do not trust "
+                 "rotation and relative pose figures"});
   return true;
 }
 
@@ -161,8 +160,8 @@ void DecideAxes(const MatchedTrajectories& matched, const EvaluationOptions& opt
     for (const Remark& remark : report->remarks) {
       if (remark.is_warning) warnings += "; " + remark.text;
     }
-    throw InputError("ground truth: its axes cannot be told, " + decision.Explain() +
-                     ": give --gt-axes optical, ned or such as y,-z,x" + warnings);
+    throw InputError("ground truth: its axes cannot be determined, " + decision.Explain() +
+                     ": specify --gt-axes optical, ned or e.g. y,-z,x" + warnings);
   }
   for (const GroundTruthAxes& axes : decision.alternatives) {
     MatchedTrajectories other = matched;
@@ -183,7 +182,7 @@ void CountFrames(const Trajectory& estimate, const Trajectory& ground_truth,
   if (report->num_frames < report->num_matched) {
     throw InputError("--frames " + std::to_string(options.num_frames) + ": fewer than the " +
                      std::to_string(report->num_matched) +
-                     " poses compared; give the number of images of the whole sequence");
+                     " poses compared; specify the number of images of the whole sequence");
   }
   if (report->has_truth_higher_rate) {
     report->num_without_truth = report->num_estimate - report->num_matched;
@@ -250,7 +249,7 @@ void RemarkOnFigures(const MatchedTrajectories& matched, TrajectoryReport* repor
   if (num_frozen > kMostByChance) {
     report->remarks.push_back(
         {true, std::to_string(num_frozen) +
-                   " poses of the estimate repeat the one before to all digits while the truth "
+                   " poses of the estimate repeat the previous one in all digits while the truth "
                    "moves: lost frames written as the last pose count as frames with one"});
   }
   if (report->ate_none_m.max == 0 && report->path_m > 0) {

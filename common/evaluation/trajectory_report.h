@@ -14,6 +14,7 @@
 
 namespace airdos {
 
+/// How a trajectory is compared with the ground truth.
 struct EvaluationOptions {
   double max_time_difference_s = 0.01;
   std::optional<GroundTruthAxes> axes;  ///< if not set, they are detected

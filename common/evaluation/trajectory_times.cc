@@ -77,10 +77,9 @@ void CheckOrder(const std::string& path, const std::vector<FileTime>& times) {
   if (first == nullptr) return;
   const bool is_reversed = num_back + 1 == times.size() && num_back > 1;
   throw InputError(
-      path +
-      Format(":%d: time %.17g lies before that of the row above; ", first->line, first->time) +
-      (is_reversed ? "all rows run backwards in time: turn them around (tac)"
-                   : "put the rows in the order of their times (sort -g), each once"));
+      path + Format(":%d: time %.17g is before that of the row above; ", first->line, first->time) +
+      (is_reversed ? "all rows run backwards in time: reverse them (tac)"
+                   : "sort the rows by time (sort -g), without duplicates"));
 }
 
 void CheckRepetition(const std::string& path, const std::vector<FileTime>& times,
@@ -127,9 +126,10 @@ void JudgeUnit(const std::string& path, const std::vector<FileTime>& times, doub
   }
   const bool counts_rows = CountRows(times);
   if (counts_rows) {
-    remarks->push_back({true, path + Format(": the times %.0f, %.0f, %.0f, ... are numbers of rows "
-                                            "rather than s: durations and rates mean nothing then",
-                                            times[0].time, times[1].time, times[2].time)});
+    remarks->push_back(
+        {true, path + Format(": the times %.0f, %.0f, %.0f, ... are numbers of rows "
+                             "rather than s: durations and rates are then meaningless",
+                             times[0].time, times[1].time, times[2].time)});
   } else if (times.size() > 1 && (median < kLeastIntervalS || median > kSparseIntervalS)) {
     remarks->push_back({true, path + Format(": the median interval of the times is %.6g s: are "
                                             "they in s?",
@@ -166,13 +166,13 @@ std::string ExplainOffset(double offset_s) {
   const double hours = std::round(size_s / 3600);
   const char* why = "they come from different clocks";
   if (size_s > kYear1985S) {
-    why = "one counts since 1970, the other from a start of its own";
+    why = "one counts from 1970, the other from another origin";
   } else if (std::abs(size_s - kGpsEpochS) < kMostLeapS) {
     why = "one is GPS time, the other since 1970";
   } else if (hours >= 1 && hours <= 24 && std::abs(size_s - 3600 * hours) < 60) {
     why = "whole hours: one is local time";
   }
-  return Format("the first poses lie %.6f s apart, %s; shift the times of one file", size_s, why);
+  return Format("the first poses are %.6f s apart, %s; shift the times of one file", size_s, why);
 }
 
 }  // namespace
@@ -243,7 +243,7 @@ std::string CompareTimes(const Trajectory& estimate, const Trajectory& ground_tr
     if (j + 1 < b.size()) nearest_s = std::min(nearest_s, b[j + 1].time_s - pose.time_s);
   }
   return text + Format(
-                    "they overlap, but the nearest times lie %.6f s apart and --max-diff is "
+                    "they overlap, but the nearest times are %.6f s apart and --max-diff is "
                     "%.6f s; are the times of one rounded, or shifted by part of a frame?",
                     nearest_s, max_time_difference_s);
 }

@@ -8,6 +8,7 @@
 
 namespace airdos {
 
+/// Settings of the CameraMotionFilter.
 struct CameraMotionFilterOptions {
   /// Standard deviation per axis of the acceleration until the carrier shows another one. Then
   /// three times the median of what the last frames showed, between the bounds.

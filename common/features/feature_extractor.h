@@ -10,6 +10,7 @@
 
 namespace airdos {
 
+/// Settings of the FeatureExtractor.
 struct FeatureExtractorOptions {
   int num_levels = 8;
   int fast_threshold = 8;  ///< grey levels; low, because crowded scenes leave only faint texture

@@ -22,6 +22,7 @@ struct LandmarkMatch {
   }
 };
 
+/// Limits for matching landmarks near their projections.
 struct ProjectionSearch {
   double radius_px = 8;    ///< at level 0, grows with the level
   int max_hamming = 80;    ///< bits

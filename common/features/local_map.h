@@ -39,6 +39,7 @@ struct LocalLandmark {
   int num_expected = 0;  ///< frames in which it was searched for: in view and off people
 };
 
+/// Limits of the LocalMap.
 struct LocalMapOptions {
   int max_landmarks = 6000;
   int max_frames_unconfirmed = 8;  ///< a landmark seen once is dropped after so many frames

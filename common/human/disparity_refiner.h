@@ -7,6 +7,7 @@
 
 namespace airdos {
 
+/// Settings of RefineDisparity().
 struct DisparityRefinerOptions {
   double patch_per_height = 0.03;  ///< half the side of the patch, of the person's height in px
   int min_half_patch_px = 3;

@@ -11,6 +11,7 @@
 
 namespace airdos {
 
+/// How a person may move and change between frames.
 struct HumanTrackOptions {
   double motion_sigma = 0.15;         ///< of the predicted joints, of the person's height
   double motion_sigma_growth = 0.03;  ///< added for each frame without a detection

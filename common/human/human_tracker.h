@@ -14,6 +14,7 @@
 
 namespace airdos {
 
+/// Settings of the HumanTracker.
 struct HumanTrackerOptions {
   double gate = 12;            ///< sum of squared errors, in sigmas, up to which it is one person
   double left_only_gate = 6;   ///< the same where there is no disparity to compare

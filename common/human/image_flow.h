@@ -8,6 +8,7 @@
 
 namespace airdos {
 
+/// Settings of the ImageFlow.
 struct ImageFlowOptions {
   int window_px = 13;                ///< side of the patch that is followed
   int num_levels = 4;                ///< pyramid levels above the full image

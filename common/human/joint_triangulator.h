@@ -25,6 +25,7 @@ struct TriangulatedJoint {
 /// One person, indexed by Joint.
 using JointObservations = std::array<std::optional<TriangulatedJoint>, kNumJoints>;
 
+/// Settings of TriangulatePerson() and its relatives.
 struct JointTriangulatorOptions {
   double min_confidence = 0.1;
   double min_depth_m = 0.5;

@@ -36,6 +36,7 @@ struct PersonConstraint {
   Eigen::MatrixXd covariance_W;  ///< 3n x 3n, m^2: prediction plus measurement
 };
 
+/// Settings of the PeopleFilter.
 struct PeopleFilterOptions {
   double acceleration_m_s2 = 3;          ///< per axis, until a person shows another one
   double min_acceleration_factor = 0.3;  ///< of it, for a person who keeps a velocity exactly

@@ -50,7 +50,7 @@ class TrajectoryRows {
   std::string Text() const {
     if (num_left_out_ == 0) return rows_;
     return "# left out: " + std::to_string(num_left_out_) +
-           " poses whose time is not later than that of an image before them\n" + rows_;
+           " poses whose time is not later than that of an earlier image\n" + rows_;
   }
 
  private:
@@ -249,7 +249,7 @@ std::vector<std::string> ExportMap(const FourDMap& map, const std::string& prefi
   std::error_code error;
   fs::remove_all(stage, error);  // left by an export that was killed
   fs::create_directories(stage + "/people", error);
-  if (error) throw InputError(stage + ": cannot be made: " + error.message());
+  if (error) throw InputError(stage + ": cannot be created: " + error.message());
   std::vector<std::string> paths;
   try {
     ExportTrajectories(map, stage, &paths);

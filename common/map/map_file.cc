@@ -58,9 +58,9 @@ bool WriteAll(int descriptor, const std::vector<std::uint8_t>& bytes) {
 std::string ParseChunk(const std::vector<std::uint8_t>& bytes, std::size_t position,
                        MapChunk* chunk, std::size_t* next) {
   const std::size_t num_left = bytes.size() - position;
-  if (num_left < kChunkHeadBytes) return "the file ends within the head of a chunk";
+  if (num_left < kChunkHeadBytes) return "the file ends within the header of a chunk";
   ByteReader head(bytes.data() + position, kChunkHeadBytes);
-  if (head.U32() != kChunkMagic) return "no chunk begins here";
+  if (head.U32() != kChunkMagic) return "no chunk starts here";
   const std::size_t raw_size = head.U32();
   const std::size_t packed_size = head.U32();
   if (raw_size > kMaxChunkBytes || packed_size > kMaxChunkBytes) return "a chunk is too large";
@@ -146,11 +146,11 @@ MapFileSummary ReadMapFile(const std::string& path,
 MapFileSummary ParseMapFile(const std::vector<std::uint8_t>& bytes, const std::string& name,
                             const std::function<void(const MapChunk&)>& handle) {
   if (bytes.size() < kHeadBytes || std::memcmp(bytes.data(), kMagic, 8) != 0) {
-    throw InputError(name + ": is no map file (or ends within its first 12 bytes)");
+    throw InputError(name + ": is not a map file (or ends within its first 12 bytes)");
   }
   const std::uint32_t version = ByteReader(bytes.data() + 8, 4).U32();
   if (version != kMapFileVersion) {
-    throw InputError(name + ": is of version " + std::to_string(version) +
+    throw InputError(name + ": has version " + std::to_string(version) +
                      ", this program reads version " + std::to_string(kMapFileVersion));
   }
   MapFileSummary summary;

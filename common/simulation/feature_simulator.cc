@@ -23,8 +23,8 @@ void Check(const SimulationOptions& options) {
   };
   require(options.num_frames >= 2, "needs at least two frames");
   require(options.step_s > 0, "the time step must be positive");
-  require(options.camera.IsValid(), "the camera makes no sense");
-  require(0 < options.nearest_m && options.nearest_m < options.farthest_m, "bad limits of depth");
+  require(options.camera.IsValid(), "the camera is invalid");
+  require(0 < options.nearest_m && options.nearest_m < options.farthest_m, "invalid depth limits");
   require(options.static_per_frame >= 0, "a negative number of static points");
   require(options.point_sigma_m >= 0 && options.pixel_sigma_px >= 0, "a negative sigma");
   for (const ObjectGroup& group : options.objects) {

@@ -29,6 +29,7 @@ struct CameraPath {
   double pan_limit_deg = 60;  ///< angle at which it turns back
 };
 
+/// What Simulate() simulates.
 struct SimulationOptions {
   std::uint64_t seed = 1;
   int num_frames = 40;

@@ -69,10 +69,10 @@ void CheckNewFile(const std::string& path) {
   if (folder.empty()) folder = ".";
   std::error_code error;
   if (!fs::exists(folder, error)) {
-    throw InputError(path + ": there is no folder " + folder.string() + "; make it first");
+    throw InputError(path + ": there is no folder " + folder.string() + "; create it first");
   }
   if (!fs::is_directory(folder, error)) {
-    throw InputError(path + ": cannot be written: " + folder.string() + " is no folder");
+    throw InputError(path + ": cannot be written: " + folder.string() + " is not a folder");
   }
   if (access(folder.c_str(), W_OK | X_OK) != 0) FailToWrite(path);
 }
@@ -105,12 +105,12 @@ void CheckNoInput(const std::string& path, const std::vector<std::string>& input
     if (input.empty() || stat(input.c_str(), &other) != 0) continue;  // its reader will report that
     if (exists && IsSame(status, other)) {
       throw InputError(path + ": is an input" + (path == input ? "" : " (" + input + ")") +
-                       ", which is never written over; choose another name");
+                       ", which is never overwritten; choose another name");
     }
     if (!S_ISDIR(other.st_mode)) continue;
     if (IsBelow(path, other) || (exists && S_ISREG(status.st_mode) && IsFileIn(input, status))) {
-      throw InputError(path + ": lies in the input folder " + input +
-                       ", which nothing is written into; choose another place");
+      throw InputError(path + ": is in the input folder " + input +
+                       ", to which nothing is written; choose another place");
     }
   }
 }
@@ -123,7 +123,7 @@ void CheckOutputFile(const std::string& path, const OutputRules& rules) {
     if (errno != ENOENT) FailToWrite(path);
     CheckNewFile(path);
   } else if (S_ISDIR(status.st_mode)) {
-    throw InputError(path + ": is a folder, where a file is to be written");
+    throw InputError(path + ": is a folder, but a file is to be written");
   } else if (S_ISREG(status.st_mode) && !IsStandardStream(path)) {
     CheckOldFile(path, rules.force);
   }
@@ -159,7 +159,7 @@ OutputFiles::OutputFiles(const std::vector<std::string>& paths, const OutputRule
       const bool is_same = fs::weakly_canonical(fs::absolute(other.path, error), error) == place ||
                            fs::equivalent(path, other.path, error);
       if (is_same && (!fs::exists(path, error) || StampOf(path))) {  // twice /dev/null is fine
-        throw InputError(path + ": is to be written twice; give each output a name of its own");
+        throw InputError(path + ": would be written twice; give each output its own name");
       }
     }
     entries_.push_back({path, StampOf(path)});

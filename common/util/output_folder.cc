@@ -109,20 +109,20 @@ void RemoveEmptyFolders(const std::string& folder, const std::string& name) {
 
 OutputFolder::OutputFolder(const std::string& path, const OutputRules& rules)
     : path_(path), rules_(rules) {
-  if (path.empty()) throw InputError("the name of a folder for results is empty");
+  if (path.empty()) throw InputError("the name of the results folder is empty");
   // Otherwise the folder, with all its contents, would be an input of itself.
   CheckNoInput(path, rules.inputs);
   std::error_code error;
   is_new_ = fs::create_directories(path, error);
   if (!error && !fs::is_directory(path, error))
     error = std::make_error_code(std::errc::not_a_directory);
-  if (error) throw InputError(path + ": cannot be made: " + error.message());
+  if (error) throw InputError(path + ": cannot be created: " + error.message());
   try {
     Lock();
     std::string process;
     list_ = ReadList(path_, &process);
     const std::optional<FileStamp> stamp = StampOf(PathOf(kListName));
-    if (!stamp) throw InputError(PathOf(kListName) + ": is no file; remove it");
+    if (!stamp) throw InputError(PathOf(kListName) + ": is not a file; remove it");
     Append((stamp->num_bytes == 0 ? kHead : "") + std::string(kProcess) + std::to_string(getpid()) +
            "\n");
   } catch (...) {
@@ -143,7 +143,7 @@ void OutputFolder::Lock() {
       ReadList(path_, &process);
       throw InputError(path_ + ": another run is writing here" +
                        (process.empty() ? "" : " (process " + process + ")") +
-                       "; wait for its end or choose another folder");
+                       "; wait until it ends or choose another folder");
     }
     // The previous holder of the lock may have removed the list on leaving.
     struct stat opened = {};
@@ -218,14 +218,14 @@ int OutputFolder::RemoveEarlier(const Selection& selection) {
 std::string OutputFolder::Claim(const std::string& name, const std::string& group) {
   const std::string path = PathOf(name);
   if (!IsSafe(name) || name.find('\n') != std::string::npos) {
-    throw InputError(path + ": is no name for a result");
+    throw InputError(path + ": is not a valid name for a result");
   }
   CheckChange(name);
   std::error_code error;
   fs::create_directories(fs::path(path).parent_path(), error);
   if (error) {
     throw InputError(fs::path(path).parent_path().string() +
-                     ": cannot be made: " + error.message());
+                     ": cannot be created: " + error.message());
   }
   list_[name] = {std::nullopt, group};
   claimed_.insert(name);

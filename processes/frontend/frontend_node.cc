@@ -102,7 +102,7 @@ std::string FrontendNode::ReceiveUpdate(map_update_t&& message) {
   // for was lost. Only for the next few frames: a single wrong number must not end the waiting.
   const std::int64_t ahead = published_.empty() ? 0 : seq - published_.back();
   if (ahead > 0 && ahead <= options_.feedback_lag) is_feedback_silent_ = true;
-  if (!is_expected) return "too late, or of a frame that was not published";
+  if (!is_expected) return "too late, or for a frame that was not published";
   UpdateParts& parts = updates_[seq];
   const int part = message.part;
   parts[part] = std::move(message);

@@ -23,6 +23,7 @@
 
 namespace airdos {
 
+/// Settings of the FrontendNode.
 struct FrontendOptions {
   VisualOdometryOptions odometry;
   bool use_masks = true;

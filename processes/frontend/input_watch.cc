@@ -65,7 +65,7 @@ void InputWatch::JudgeTimes() {
       break;
     }
   }
-  warnings_.push_back("the left images' utime says that they are " + Brief(period_s) +
+  warnings_.push_back("according to utime, the left images are " + Brief(period_s) +
                       " s apart (median)" + unit + must);
 }
 
@@ -91,13 +91,13 @@ void InputWatch::JudgePairs() {
     is_exchange_said_ = true;
     warnings_.push_back("left and right images are exchanged: " + Percent(share_negative) +
                         " of the matches have a negative disparity; no static feature will be "
-                        "found until they change places");
+                        "found until they are swapped");
   }
   if (are_rows_said_ || error_px <= kBadlyRectified_px) return;
   are_rows_said_ = true;
   const std::string how = error_px > kNotRectified_px ? "are not rectified" : "are badly rectified";
   warnings_.push_back("the images " + how + ": rows of matches differ by " + Brief(error_px) +
-                      " px (median); airdos-check LOG|FOLDER says more");
+                      " px (median); airdos-check LOG|FOLDER reports more");
 }
 
 void InputWatch::AddMask(const cv::Mat& mask, const std::vector<BodyKeypoints>& people) {
@@ -125,12 +125,12 @@ void InputWatch::JudgeMasks() {
   std::string text;
   if (coverage > kMaxCoverage) {
     text = "the person masks cover " + Percent(coverage) +
-           " of the image (median), where static features may not come from; are they inverted, or "
+           " of the image (median), which excludes static features there; are they inverted, or "
            "does each class have a number?";
   } else if (misses_people) {
     text = "the person masks do not mark people: " + std::to_string(num_marked) + " of " +
            std::to_string(num_joints) +
-           " keypoints lie on them; are they inverted, empty or of another camera?";
+           " keypoints are on them; are they inverted, empty or from another camera?";
   }
   if (text.empty()) return;
   are_masks_said_ = true;

@@ -74,7 +74,7 @@ MapFrame ToMapFrame(const state_estimate_t& message) {
 const std::string& CheckedDirectory(const MapRecorderOptions& options) {
   if (options.directory.empty()) {
     throw InputError(
-        "--run-dir FOLDER is missing: where are map and trajectories to go? (It is "
+        "--run-dir FOLDER is missing: where should map and trajectories go? (It is "
         "output.directory of the configuration)");
   }
   return options.directory;
@@ -230,7 +230,7 @@ void MapRecorderNode::WatchTime(const Header& header) {
   Warn("times go back: image " + std::to_string(header.seq) + " is not later than image " +
        std::to_string(newest_pose_->seq) + " (utime " + std::to_string(header.utime) + " and " +
        std::to_string(newest_pose_->utime) +
-       "); the map has such poses, the trajectory files leave them out");
+       "); the map contains such poses, the trajectory files omit them");
 }
 
 // The newest one is kept: the end of the map needs its axes.
@@ -328,7 +328,7 @@ void MapRecorderNode::CloseSession() {
     ExportMap(map, prefix_, prefix_.empty() ? kExportGroup : kGroup, &results_);
     for (const std::string& name : ExportNames(options_.directory, prefix_)) {
       if (results_.IsListed(name) || !fs::exists(results_.PathOf(name))) continue;
-      Say(results_.PathOf(name) + ": was there before and is not of this run");  // --force
+      Say(results_.PathOf(name) + ": existed before and is not from this run");  // --force
     }
   }
   results_.Finish();

@@ -19,6 +19,7 @@
 
 namespace airdos {
 
+/// Settings of the MapRecorderNode.
 struct MapRecorderOptions {
   std::string directory;      ///< made if it is not there; must be named
   int chunk_frames = 10;      ///< frames a chunk; a kill loses at most one chunk

@@ -248,7 +248,7 @@ class FrameNode : public Node {
 
   std::string Refused(FrameJoiner::Arrival arrival, int input, const Header& header) {
     if (arrival == FrameJoiner::Arrival::kTooFar) {
-      return "seq " + std::to_string(header.seq) + " is far beyond the one before";
+      return "seq " + std::to_string(header.seq) + " is far beyond the previous one";
     }
     const auto slot = static_cast<std::size_t>(input);
     ++counters(channels_of_inputs_[slot]).num_duplicate;
@@ -269,7 +269,7 @@ class FrameNode : public Node {
       others = "; there is one for session " + std::to_string(calibrated_.back());
     }
     Warn("no CALIBRATION yet for session " + std::to_string(session) +
-         ": no pose will come until it does" + others);
+         ": there are no poses until it arrives" + others);
   }
 
   void Work(const FrameJoiner::Frame& frame) {

@@ -54,13 +54,13 @@ std::string PartnerWatch::JudgeNumbers(std::int64_t session, const StrayWatch& l
   if (!numbers.newest() || !left_numbers.newest()) {
     text << " is silent; is it published, and under this name?";
   } else if (numbers.newest()->session != session) {
-    text << " is of session " << numbers.newest()->session << ", the left images of session "
-         << session << "; both must say the same session";
+    text << " has session " << numbers.newest()->session << ", the left images have session "
+         << session << "; both must have the same session";
   } else if (num_with_partner_ == 0) {
     text << " counts from " << numbers.first_of_session()->seq << ", the left images from "
          << left_numbers.first_of_session()->seq << "; do both drivers count from the same number?";
   } else {
-    text << " leaves images out, or loses them on its way; airdos-doctor looks at the network";
+    text << " skips images, or loses them in transit; airdos-doctor checks the network";
   }
   return text.str();
 }
@@ -71,7 +71,7 @@ std::string PartnerWatch::JudgeTimes() {
   are_times_said_ = true;
   std::ostringstream text;
   text << channel_ << " is " << 1e-6 * offset_us << " s away from the left image of the same "
-       << "number (median): do both drivers count from the same image, and by the same clock?";
+       << "number (median): do both drivers count from the same image and use the same clock?";
   return text.str();
 }
 

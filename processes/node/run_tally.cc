@@ -73,7 +73,7 @@ std::string WhyInVain(const RunTally::Counts& counts) {
   }
   if (counts.num_static_features == 0 && counts.num_from_images == 0) {
     return "no static landmark was seen in " + std::to_string(counts.num_frames) +
-           " frames, so the poses mean nothing: airdos-check says what is wrong with the input";
+           " frames, so the poses are meaningless: airdos-check says what is wrong with the input";
   }
   return "";
 }

@@ -70,7 +70,7 @@ void OptimizerNode::ProcessFrame(const Header& header, OptimizerInputs inputs) {
   tally_.Take(answer.state);
   if (archive_.Add(answer.changes)) {
     Warn("the map has more than " + std::to_string(LandmarkArchive::kMaxLandmarks) +
-         " landmarks: the oldest are not told again to who joins the bus late; the recorder has "
+         " landmarks: the oldest are not repeated for receivers that join late; the recorder has "
          "them");
   }
   for (const map_update_t& part : ToMapUpdates(header, answer.changes, archive_.NextRepeated())) {

@@ -12,7 +12,9 @@
 
 namespace airdos {
 
+/// How images are encoded, and how large their messages may be.
 struct ImagePackerOptions {
+  /// When an image file is re-encoded.
   enum class Encoding {
     kAuto,  ///< a file that fits travels unchanged; any other becomes a JPEG
     kJpeg,  ///< always JPEG; a JPEG file that fits travels unchanged

@@ -13,6 +13,7 @@
 
 namespace airdos {
 
+/// Which processes the LockstepGate waits for, and for how long.
 struct LockstepGateOptions {
   std::vector<std::string> wait_for;  ///< names of processes as in STATUS; empty: never waits
   int frames_in_flight = 4;

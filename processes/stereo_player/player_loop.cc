@@ -113,7 +113,8 @@ void PlayerLoop::Run() {
   std::ostringstream line;
   line.precision(3);
   line << "published " << num_published_ << " frames in " << SteadyClock_s() - start_s << " s";
-  if (num_not_published_ > 0) line << ", the network refused " << num_not_published_ << " messages";
+  if (num_not_published_ > 0)
+    line << ", the network rejected " << num_not_published_ << " messages";
   Say(line.str());
 }
 
@@ -148,8 +149,8 @@ void PlayerLoop::WaitForTime(const Header& header) {
       std::ostringstream line;
       line.precision(3);
       line << "capture time jumps by " << gap_s << " s at image " << header.seq
-           << ": going on without a wait";
-      if (num_jumps_ == kMaxJumpsSaid) line << " (further jumps are not said)";
+           << ": continuing without waiting";
+      if (num_jumps_ == kMaxJumpsSaid) line << " (further jumps are not reported)";
       Say(line.str());
     }
     gap_s = 0;

@@ -165,7 +165,7 @@ TEST(LockstepGateBooksTest, PublishingIsNoProgress) {
   EXPECT_TRUE(gate.IsAllDone(60.1));
   const std::vector<std::string> notes = gate.TakeNotes();
   ASSERT_FALSE(notes.empty());
-  EXPECT_EQ(notes.back(), "a finishes no frame for 60 s: going on without it");
+  EXPECT_EQ(notes.back(), "a has finished no frame for 60 s: continuing without it");
 }
 
 TEST(LockstepGateBooksTest, WhoCameBeforeTheFirstFrameMissedNothing) {

@@ -54,7 +54,7 @@ TEST(InputWatchBooksTest, TimesAreJudgedOnce) {
   InputWatch watch;
   for (std::int64_t k = 0; k < 300; ++k) watch.AddTime(5000 + 40 * k);
   EXPECT_EQ(Joined(&watch),
-            "the left images' utime says that they are 4e-05 s apart (median): it is in ms; utime "
+            "according to utime, the left images are 4e-05 s apart (median): it is in ms; utime "
             "must be the capture time in us\n");
 }
 
@@ -86,8 +86,8 @@ TEST(InputWatchBooksTest, OnlyWhatIsSeenAndOnlySinceTheLastLookCountsForMasks) {
   EXPECT_EQ(Joined(&watch), "") << "the 140 before were judged";
   for (int k = 100; k < 600; ++k) watch.AddMask(empty, {Person(1)});
   EXPECT_EQ(Joined(&watch),
-            "the person masks do not mark people: 0 of 100 keypoints lie on them; are they "
-            "inverted, empty or of another camera?\n")
+            "the person masks do not mark people: 0 of 100 keypoints are on them; are they "
+            "inverted, empty or from another camera?\n")
       << "once";
 }
 

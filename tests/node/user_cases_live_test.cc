@@ -138,8 +138,8 @@ TEST(UserCases, Case86cTheRightCameraHasASessionOfItsOwn) {
     said += watch.Add({100000 * seq, seq, 1}, std::nullopt, left_numbers, right_numbers);
   }
   EXPECT_EQ(said,
-            "no right image came for 10 of 10 left images: CAMERA_RIGHT is of session 2, the left "
-            "images of session 1; both must say the same session")
+            "no right image came for 10 of 10 left images: CAMERA_RIGHT has session 2, the left "
+            "images have session 1; both must have the same session")
       << "and once";
 }
 
@@ -195,7 +195,7 @@ TEST(UserCases, Case86cTheOptimizerPredictsNothingIntoThePast) {
     return estimate.status != state_estimate_t::STATUS_INVALID;
   };
   constexpr std::int8_t kNone = -1;
-  EXPECT_FALSE(work(0, 1000, static_features_t::STATE_INVALID)) << "nothing is known yet";
+  EXPECT_FALSE(work(0, 1000, static_features_t::STATE_INVALID)) << "are unknown yet";
   EXPECT_TRUE(work(1, 2000, static_features_t::STATE_INITIALIZING));
   EXPECT_TRUE(work(2, 3000, kNone)) << "predicted";
   EXPECT_FALSE(work(3, 1500, kNone));
@@ -229,9 +229,9 @@ TEST_F(PlayedAgainTest, CaseLogPlayedTwice) {
   const std::vector<std::string> said = node_.TakeWarnings();
   ASSERT_EQ(said.size(), 1u) << "once, not for each channel";
   EXPECT_EQ(said[0],
-            "session 1 was already worked on up to image 49: what comes again of it is dropped; to "
+            "session 1 was already processed up to image 49: repeated messages are dropped; to "
             "play it again use replay_log.sh (a new session each time) or airdos-stereo-player "
-            "--data LOG --session N, or start the processes again");
+            "--data LOG --session N, or restart the processes");
   Play(0, 49, 1);
   EXPECT_EQ(node_.TakeWarnings().size(), 1u) << "each time";
   EXPECT_EQ(node_.frames().num_done, 50);
@@ -253,7 +253,7 @@ TEST_F(PlayedAgainTest, CaseEarlierSessionPlayedAgain) {
   Play(0, 9, 1);
   const std::vector<std::string> said = node_.TakeWarnings();
   ASSERT_EQ(said.size(), 1u);
-  EXPECT_EQ(said[0].find("session 1 was already worked on, session 2 came after it"), 0u);
+  EXPECT_EQ(said[0].find("session 1 was already processed, session 2 came after it"), 0u);
 }
 
 TEST_F(PlayedAgainTest, CaseDuplicatesAndOvertakenMessagesAreNoSecondPlay) {
@@ -289,7 +289,7 @@ TEST_F(PlayedAgainTest, CaseImagesThatComeAfterTheirFrame) {
   }
   ASSERT_EQ(node_.TakeWarnings().size(), 1u);
   EXPECT_TRUE(
-      HasWarning(node_, "FIRST: image 7 comes after that frame, or a later one, was worked"))
+      HasWarning(node_, "FIRST: image 7 comes after that frame, or a later one, was processed"))
       << AllWarnings(node_);
 }
 
@@ -304,9 +304,10 @@ TEST(UserCases, CaseNoCalibration) {
   ASSERT_TRUE(node.CompleteOldest());  // after a deadline
   ASSERT_TRUE(node.CompleteOldest());
   ASSERT_EQ(node.warnings().size(), 1u);
-  EXPECT_EQ(node.warnings().front(),
-            "no CALIBRATION yet for session 7: no pose will come until it does; there is one for "
-            "session 8");
+  EXPECT_EQ(
+      node.warnings().front(),
+      "no CALIBRATION yet for session 7: there are no poses until it arrives; there is one for "
+      "session 8");
 }
 
 TEST(UserCases, CaseWarningsAreBounded) {
@@ -541,7 +542,7 @@ TEST(UserCases, Case86cTrajectoryFilesNeverGoBackInTime) {
   }
   std::filesystem::remove_all(folder);
   EXPECT_EQ(times,
-            "# left out: 2 poses whose time is not later than that of an image before them "
+            "# left out: 2 poses whose time is not later than that of an earlier image "
             "1.001.101.20");
 }
 

@@ -170,7 +170,7 @@ TEST_F(UserCases, Case85ChannelNamesWithAPrefixAnotherCaseOrASuffix) {
     }
     EXPECT_TRUE(Has(text, left + " (14 messages of image_t, ")) << text;
     const std::string why = WhyUnusable(path_);
-    EXPECT_TRUE(Has(why, path_ + ": holds no message for the processes")) << why;
+    EXPECT_TRUE(Has(why, path_ + ": contains no message for the processes")) << why;
     EXPECT_TRUE(Has(why, left + " looks like CAMERA_LEFT")) << why;
     EXPECT_EQ(why.find('\n'), std::string::npos) << why;
   }
@@ -209,7 +209,7 @@ TEST_F(UserCases, Case86AllNumbersAreZero) {
     header->session = header->seq;
     header->seq = 0;
   });
-  EXPECT_TRUE(Has(Check(), "has a session of its own")) << Check();
+  EXPECT_TRUE(Has(Check(), "has its own session")) << Check();
 }
 
 TEST_F(UserCases, Case86cTheRightCameraCountsFromElsewhere) {
@@ -237,7 +237,7 @@ TEST_F(UserCases, Case86cClocksDifferAsWell) {
   });
   ExpectOneError("in the order of the log its numbers are those of CAMERA_LEFT + 1000",
                  "log.partners");
-  EXPECT_TRUE(Has(Check(), "14 of 14 left images have no message of their number")) << Check();
+  EXPECT_TRUE(Has(Check(), "14 of 14 left images have no message with their number")) << Check();
 }
 
 TEST_F(UserCases, Case86cSessionsDiffer) {
@@ -245,7 +245,7 @@ TEST_F(UserCases, Case86cSessionsDiffer) {
     if (name == channel::kCameraRight) header->session = 77;
   });
   ExpectOneError(
-      "CAMERA_RIGHT: error: 14 of 14 left images have no message of their number and "
+      "CAMERA_RIGHT: error: 14 of 14 left images have no message with their number and "
       "session here: its session is 77, that of CAMERA_LEFT 5",
       "log.partners");
 }
@@ -270,8 +270,8 @@ TEST_F(UserCases, Case86cAFewPartnersAreMissing) {
   const std::string text = Check();
   EXPECT_EQ(findings_.count(Severity::kError), 0) << text;
   EXPECT_TRUE(Has(text,
-                  "CAMERA_RIGHT: warning: 2 of 14 left images have no message of their "
-                  "number and session here, the first is 2"))
+                  "CAMERA_RIGHT: warning: 2 of 14 left images have no message with their number "
+                  "and session here, the first is 2"))
       << text;
   EXPECT_TRUE(Has(Notes(), "CAMERA_RIGHT: 2 of 14 left images")) << Notes();
   messages_ = SoundMessages();
@@ -311,7 +311,8 @@ TEST_F(UserCases, Case87ClocksThatStandStillOrGoBack) {
   messages_ = SoundMessages();
   ChangeHeaders(
       [](const std::string&, Header* header) { header->utime = 1000000000 - header->utime; });
-  ExpectOneError("13 of 14 images have an earlier capture time than the one before", "times.order");
+  ExpectOneError("13 of 14 images have an earlier capture time than the previous one",
+                 "times.order");
   messages_ = SoundMessages();
   ChangeHeaders([](const std::string& name, Header* header) {
     if (name == channel::kCameraRight) header->utime *= 1000;
@@ -323,7 +324,7 @@ TEST_F(UserCases, Case88bWidthAndHeightAreExchanged) {
   const auto exchange = [](auto* message) { std::swap(message->width, message->height); };
   ChangeAll<image_t>(channel::kCameraLeft, exchange);
   ExpectOneError(
-      "CAMERA_LEFT 0: error: the message says 192 x 320 px, the file in it is of 320 x "
+      "CAMERA_LEFT 0: error: the message says 192 x 320 px, the file in it has 320 x "
       "192 px: width and height are exchanged; so 14 of 14 messages",
       "images.file");
   messages_ = SoundMessages();

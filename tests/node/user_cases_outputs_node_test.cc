@@ -261,7 +261,7 @@ TEST_F(ReplayCases, AssignmentsNeedNoProcessWhereOneAloneHasTheKey) {
   setup_.overrides = {"optimzer:people.mode=on"};
   EXPECT_TRUE(Has(MessageOf([&] { PrepareReplay(setup_); }), "did you mean 'optimizer'"));
   setup_.overrides = {"stereo_player:image.max_image_bytes=3000"};
-  EXPECT_TRUE(Has(MessageOf([&] { PrepareReplay(setup_); }), "no part of a replay"));
+  EXPECT_TRUE(Has(MessageOf([&] { PrepareReplay(setup_); }), "not part of a replay"));
 }
 
 TEST_F(ReplayCases, OneFileOfAConfigurationIsKnownByItsName) {
@@ -270,7 +270,8 @@ TEST_F(ReplayCases, OneFileOfAConfigurationIsKnownByItsName) {
   setup_.run_dir = Path("run");
   EXPECT_EQ(MakeReplayNodes(setup_).size(), 4u);
   Write("mine.yaml", "");
-  EXPECT_TRUE(Has(MessageOf([&] { SetConfig(Path("mine.yaml"), &setup_); }), "of which process"));
+  EXPECT_TRUE(Has(MessageOf([&] { SetConfig(Path("mine.yaml"), &setup_); }),
+                  "which process it belongs to"));
 }
 
 }  // namespace

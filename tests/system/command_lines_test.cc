@@ -177,7 +177,7 @@ TEST_F(CommandLineTest, MistypedCommandsAndChoicesAreAnswered) {
   EXPECT_EQ(Run("airdos-replay", {"a", "b"}).errors,
             "airdos-replay: one argument too many: 'b' (see --help)\n");
   EXPECT_EQ(Run("airdos-replay", {"a", "--log", "b"}).errors,
-            "airdos-replay: one input only: 'a' or 'b'\n");
+            "airdos-replay: only one input is possible: 'a' or 'b'\n");
   for (const char* program : {"airdos-replay", "airdos-check", "airdos-stereo-player"}) {
     const Answer answer = Run(program, {});
     EXPECT_EQ(answer.exit_code, 2);

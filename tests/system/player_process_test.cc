@@ -206,7 +206,7 @@ TEST_F(PlayerProcessTest, GoesOnWithoutAProcessThatIsKilled) {
   EXPECT_EQ(player->Wait(kDeadline_s), 0) << player->Errors();
   EXPECT_NE(player->Errors().find("waiting for airdos-echo to finish a frame"), std::string::npos)
       << player->Errors();
-  EXPECT_NE(player->Errors().find("airdos-echo is silent for 10 s: going on without it"),
+  EXPECT_NE(player->Errors().find("airdos-echo is silent for 10 s: continuing without it"),
             std::string::npos)
       << player->Errors();
 }
@@ -219,7 +219,7 @@ TEST_F(PlayerProcessTest, GoesOnWhenAProcessStopsCleanly) {
   ASSERT_TRUE(HearUntil([&] { return echoes_.size() >= 10; }));
   echo->Signal(SIGTERM);
   EXPECT_EQ(player->Wait(kDeadline_s), 0) << player->Errors();
-  EXPECT_NE(player->Errors().find("airdos-echo has stopped: going on without it"),
+  EXPECT_NE(player->Errors().find("airdos-echo has stopped: continuing without it"),
             std::string::npos)
       << player->Errors();
 }

@@ -11,6 +11,7 @@ namespace airdos {
 /// The minimizer: our own solver, designed for these graphs (structured_minimizer.h), or Ceres.
 enum class BundleSolver { kStructured, kCeres };
 
+/// Settings of SolveBundle().
 struct BundleOptions {
   bool use_people = true;
   bool compute_covariance = true;  ///< of the newest frame
@@ -49,6 +50,7 @@ struct BundleOptions {
 
 inline constexpr double kUnobservedSigma = 100;  // m or rad, where nothing says anything
 
+/// Outcome of SolveBundle().
 struct BundleSummary {
   bool has_converged = false;  ///< the last pass met its tolerance within its iterations
   int num_iterations = 0;      ///< of all passes

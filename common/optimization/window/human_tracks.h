@@ -14,6 +14,7 @@
 
 namespace airdos {
 
+/// Limits of the optimizer's memory of people.
 struct HumanTracksOptions {
   int window_frames = 8;          ///< newest frames whose people are in the adjustment
   int forget_after_frames = 100;  ///< the lengths of a person not seen for longer are forgotten

@@ -15,6 +15,7 @@
 
 namespace airdos {
 
+/// How the camera's own motion enters the adjustment.
 struct CameraMotionOptions {
   bool use_acceleration = true;  ///< factor between three consecutive frames of the window
   /// Its sigma, of the one that the front end predicts the newest frame with (which is generous). A
@@ -22,6 +23,7 @@ struct CameraMotionOptions {
   double sigma_factor = 0.6;
 };
 
+/// Settings of the SlidingWindowOptimizer and its parts.
 struct SlidingWindowOptions {
   WindowMapOptions map;
   BundleOptions bundle;  ///< `use_people` is the switch people: on

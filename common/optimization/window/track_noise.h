@@ -7,6 +7,7 @@
 
 namespace airdos {
 
+/// Settings of EstimateMotionNoise().
 struct TrackNoiseOptions {
   /// What a track is taken for as long as it says nothing itself, and how far tracks differ from
   /// it: the sigma of the logarithm of each value.
@@ -36,6 +37,7 @@ struct TrackNoiseOptions {
 MotionNoise EstimateMotionNoise(const TrackNoiseOptions& options, const BundleProblem& problem,
                                 const BundleProblem::Human& human);
 
+/// Settings of FindTrackBreaks().
 struct TrackBreakOptions {
   double acceleration_m_s2 = 6;  ///< that nobody exceeds for long: sigma of the filter
   double camera_sigma_m = 0.1;   ///< of the poses from frame to frame, at the person

@@ -6,6 +6,7 @@
 
 namespace airdos {
 
+/// Thresholds of TrustsPeople().
 struct TrustOptions {
   /// People are not believed where the newest frame has at least so many static observations.
   int min_static_observations = 15;

@@ -12,6 +12,7 @@
 
 namespace airdos {
 
+/// Size of the window and limits of the WindowMap.
 struct WindowMapOptions {
   int window_frames = 12;             ///< newest frames, whose poses are free
   int max_fixed_key_frames = 8;       ///< older frames that hold the window in place

@@ -64,7 +64,7 @@ void LogSizes::Report(const std::string& path, const std::optional<StereoCamera>
     if (channel.contradicted.num > 0) {
       const bool is_exchanged = channel.said == channel.of_file.Exchanged();
       findings->Fail(kind, where + std::to_string(channel.contradicted.first_seq),
-                     "the message says " + channel.said.Text() + ", the file in it is of " +
+                     "the message says " + channel.said.Text() + ", the file in it has " +
                          channel.of_file.Text() +
                          (is_exchanged ? ": width and height are exchanged" : "") +
                          OfAll(channel.contradicted.num, channel.num));

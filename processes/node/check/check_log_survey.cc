@@ -157,7 +157,7 @@ void LogSurvey::TakeCalibration(const stereo_calibration_t& message) {
     camera_ = camera;
   } else if (!(*camera_ == camera)) {
     calibration_changes_.Add(message.seq,
-                             "differs from the first one; only the first of a session holds");
+                             "differs from the first one; only the first of a session applies");
   }
 }
 

@@ -53,7 +53,7 @@ bool CheckOrder(const std::vector<double>& intervals_us, const std::string& wher
     const auto num = std::count_if(first, intervals_us.end(), is_wrong);
     findings->Fail("times.order", where,
                    std::to_string(num) + " of " + std::to_string(intervals_us.size() + 1) +
-                       " images " + what + " the one before; the first is at place " +
+                       " images " + what + " the previous one; the first is at place " +
                        std::to_string(first - intervals_us.begin() + 2) + " in the log's order");
     return true;
   };

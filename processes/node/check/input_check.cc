@@ -19,7 +19,7 @@ std::string Text(const std::string& path, const Finding& finding) {
 std::string HowToGoOn(const std::string& path, std::size_t num_errors) {
   const std::string more =
       num_errors > 1 ? " (and " + std::to_string(num_errors - 1) + " more errors)" : "";
-  return more + "; 'airdos-check " + path + "' says more, --no-check goes on all the same";
+  return more + "; 'airdos-check " + path + "' says more; --no-check continues anyway";
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ void AddCalibrationOption(CLI::App* app, std::string* calibration) {
 }
 
 void AddInputCheckOptions(CLI::App* app, InputCheckOptions* options) {
-  app->add_flag("--no-check", options->is_off, "play the input without a look at it beforehand");
+  app->add_flag("--no-check", options->is_off, "play the input without checking it first");
   AddCalibrationOption(app, &options->calibration);
 }
 

@@ -27,7 +27,7 @@ constexpr double kStatusPeriod_s = 1.0;
 // The writer replaces an existing file.
 const std::string& CheckedPath(const LogRecorderOptions& options) {
   if (!options.replaces_file && StampOf(options.path)) {
-    throw InputError(options.path + ": is there already; --force replaces it");
+    throw InputError(options.path + ": already exists; --force replaces it");
   }
   CheckOutputFile(options.path, {{}, options.replaces_file});
   return options.path;
@@ -132,7 +132,7 @@ std::string LogRecorder::Summary() const {
     if (counters.num_missing > 0) text << ", " << counters.num_missing << " missing";
     text << "\n";
   }
-  if (num_rejected_ > 0) text << num_rejected_ << " messages no log can hold were left out\n";
+  if (num_rejected_ > 0) text << num_rejected_ << " messages that no log can hold were left out\n";
   text << options_.path << ": " << writer_.num_events() << " events, " << writer_.num_bytes()
        << " bytes\n";
   return text.str();

@@ -14,6 +14,7 @@
 
 namespace airdos {
 
+/// What is recorded, and where.
 struct LogRecorderOptions {
   std::string path;
   std::string channels = ".*";  ///< regular expression (ECMAScript) of whole names

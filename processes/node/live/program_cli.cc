@@ -176,7 +176,7 @@ const std::string& InputOptions::path() const {
   for (const std::string* given : {&input_, &data_, &log_}) {
     if (given->empty()) continue;
     if (path != nullptr) {
-      throw InputError("one input only: '" + *path + "' or '" + *given + "'");
+      throw InputError("only one input is possible: '" + *path + "' or '" + *given + "'");
     }
     path = given;
   }

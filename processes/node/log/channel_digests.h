@@ -15,6 +15,7 @@ namespace airdos {
 /// appearance), seq and arrival.
 class ChannelDigests {
  public:
+  /// Number of messages on a channel, and their digest.
   struct Entry {
     std::int64_t num_messages = 0;
     std::string sha256;

@@ -50,7 +50,7 @@ EventLogReader::EventLogReader(const std::string& path) : path_(path) {
   if (stat(path.c_str(), &status) != 0) fail();
   if (S_ISDIR(status.st_mode)) throw InputError(path + ": is a folder, not an LCM log");
   if (!S_ISREG(status.st_mode))
-    throw InputError(path + ": is a pipe or a device, not a file: an LCM log is wanted");
+    throw InputError(path + ": is a pipe or a device, not a file: an LCM log is expected");
   file_.reset(std::fopen(path.c_str(), "rb"));
   if (file_ == nullptr || fstat(fileno(file_.get()), &status) != 0) fail();
   num_bytes_ = status.st_size;
@@ -64,7 +64,7 @@ EventLogReader::EventLogReader(const std::string& path) : path_(path) {
   if (first_) return;
   if (LooksLikeText(bytes)) throw InputError(path + ": is a text file, not an LCM log");
   throw InputError(path + ": holds no LCM event (" + std::to_string(num_bytes_) +
-                   " bytes): it is no LCM log, or damaged from end to end");
+                   " bytes): it is not an LCM log, or damaged from end to end");
 }
 
 std::optional<LogEvent> EventLogReader::Next() {
@@ -246,7 +246,7 @@ void EventLogWriter::Write(std::int64_t number, std::int64_t utime, const std::s
 void EventLogWriter::Sync() {
   // EINVAL: a pipe or a device such as /dev/null, for which there is nothing to wait.
   if (fdatasync(file_) != 0 && errno != EINVAL && errno != EROFS) {
-    Fail(std::string("cannot be brought to the disk: ") + std::strerror(errno));
+    Fail(std::string("cannot be flushed to disk: ") + std::strerror(errno));
   }
 }
 

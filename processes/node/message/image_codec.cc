@@ -11,7 +11,7 @@
 namespace airdos {
 namespace {
 
-constexpr char kDoesNotDecode[] = "the image does not decode";
+constexpr char kDoesNotDecode[] = "the image cannot be decoded";
 
 /// Checks what the file claims before the decoder allocates memory for it. Empty if it may be
 /// decoded.
@@ -25,7 +25,8 @@ std::string WhyNoFile(const image_t& message) {
                                            message.width, message.height);
   }
   if (header.bits == 16) {
-    return "the image has 16 bits a sample, but their range is that of the sequence: send 8 bits";
+    return "the image has 16 bits per sample, but the range depends on the whole sequence: send 8 "
+           "bits";
   }
   return "";
 }

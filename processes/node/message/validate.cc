@@ -112,7 +112,7 @@ class Checker {
   void Fail(const char* field, Value value, double min, double max) {
     if (!reason_.empty()) return;
     std::ostringstream why;
-    why << "must lie between " << min << " and " << max;
+    why << "must be between " << min << " and " << max;
     Fail(field, value, why.str());
   }
 
@@ -188,9 +188,10 @@ std::string Validate(const stereo_calibration_t& message) {
   }
   check.Range("baseline_m", message.baseline_m, 0, 1000);
   if (!ToStereoCamera(message).IsValid()) {
-    check.Fail("fx_px", message.fx_px,
-               "and the other numbers are no camera: all must be above 0 and the principal point "
-               "in the image");
+    check.Fail(
+        "fx_px", message.fx_px,
+        "and the other numbers are not a camera: all must be above 0 and the principal point "
+        "in the image");
   }
   // A field of view of more than 178 degrees, or a baseline of less than a millimetre, is an error.
   check.Range("fx_px", message.fx_px, 0.01 * message.width, kMaxPixel);

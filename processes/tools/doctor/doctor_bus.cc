@@ -49,7 +49,7 @@ std::string Describe(const BusTraffic& traffic) {
 Diagnosis JudgePort(const MulticastUrl& url, const BusTraffic& traffic) {
   const std::string port = "port " + std::to_string(url.port);
   if (traffic.channels.empty()) {
-    return {Health::kOk, "bus.port", "nobody speaks on " + port, ""};
+    return {Health::kOk, "bus.port", "nobody sends on " + port, ""};
   }
   const std::string other = "--lcm-url '" + WithPort(url, url.port + 1) + "' for another run";
   std::string twins;
@@ -71,12 +71,12 @@ void JudgeProcess(const process_status_t& status, const std::string& own_version
     result->push_back({Health::kFail, "bus.types",
                        NameOf(status) + " was built with other message types (" +
                            status.types_fingerprint + ", here " + own_fingerprint + ")",
-                       "build and install all programs from one source"});
+                       "build and install all programs from the same source"});
   } else if (status.version != own_version) {
     result->push_back(
         {Health::kWarn, "bus.version",
-         NameOf(status) + " is of version " + status.version + ", this of " + own_version,
-         "build and install all programs from one source"});
+         NameOf(status) + " has version " + status.version + ", this program " + own_version,
+         "build and install all programs from the same source"});
   }
   if (status.state == process_status_t::STATE_STALLED) {
     result->push_back(
@@ -136,15 +136,17 @@ Diagnoses JudgeTraffic(const MulticastUrl& url, const BusTraffic& traffic,
                       "smaller or JPEG images, below 128 kB"});
   }
   if (traffic.num_strange_status > 0) {
-    result.push_back({Health::kFail, "bus.types",
-                      std::to_string(traffic.num_strange_status) +
-                          " STATUS messages do not decode: somebody was built with other types",
-                      "build and install all programs from one source"});
+    result.push_back(
+        {Health::kFail, "bus.types",
+         std::to_string(traffic.num_strange_status) +
+             " STATUS messages cannot be decoded: some program was built with other types",
+         "build and install all programs from the same source"});
   }
   if (traffic.processes.empty()) {
     result.push_back(
         {Health::kOk, "bus.processes",
-         "no process says STATUS; here version " + own_version + ", types " + own_fingerprint, ""});
+         "no process publishes STATUS; here version " + own_version + ", types " + own_fingerprint,
+         ""});
     return result;
   }
   std::string names;
@@ -207,7 +209,7 @@ Diagnoses JudgeRoundTrip(const RoundTrip& trip) {
   if (num_lost > 0) {
     const bool is_bad = 100 * num_lost > trip.num_sent;
     return {{is_bad ? Health::kFail : Health::kWarn, "bus.round_trip", what,
-             "sudo sysctl -w net.core.rmem_max=4194304 and less load"}};
+             "sudo sysctl -w net.core.rmem_max=4194304 and reduce the load"}};
   }
   if (trip.latency_p99_ms > 1e3 * kCameraPeriod_s) {
     return {

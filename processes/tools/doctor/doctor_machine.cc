@@ -75,7 +75,7 @@ Diagnoses JudgeDisk(const std::string& folder) {
   }
   if (!fs::is_directory(existing, error) || access(existing.c_str(), W_OK) != 0) {
     return {{Health::kFail, "disk", existing.string() + " cannot be written to",
-             "--run-dir FOLDER that can"}};
+             "choose a writable --run-dir FOLDER"}};
   }
   const fs::space_info space = fs::space(existing, error);
   if (error) return {{Health::kFail, "disk", existing.string() + ": " + error.message(), ""}};
@@ -90,7 +90,7 @@ Diagnoses JudgeDisk(const std::string& folder) {
                         : log_min < kMinLog_min ? Health::kWarn
                                                 : Health::kOk;
   return {{health, "disk", existing.string() + ": " + text,
-           health == Health::kOk ? "" : "rm what is not needed there, or another --run-dir"}};
+           health == Health::kOk ? "" : "remove files there, or choose another --run-dir"}};
 }
 
 }  // namespace airdos

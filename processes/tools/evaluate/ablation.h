@@ -26,6 +26,7 @@ struct AblationErrors {
   bool has_converged = true;
 };
 
+/// Settings of an Ablation.
 struct AblationOptions {
   int max_iterations = 1000;  ///< of each solve: enough to converge
   double function_tolerance = 1e-10;

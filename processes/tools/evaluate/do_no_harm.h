@@ -11,6 +11,7 @@
 
 namespace airdos {
 
+/// When people are believed in the measurement of do-no-harm.
 struct DoNoHarmOptions {
   AblationOptions ablation;
   /// People are believed only if the static scene does not contradict them: its own residuals, at

@@ -7,7 +7,7 @@
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  CLI::App app("How good an estimate is, given the truth", "airdos-evaluate");
+  CLI::App app("Measures how good an estimate is, given the truth", "airdos-evaluate");
   app.fallthrough();
   app.require_subcommand(1);
   airdos::AddTrajectoryCommand(&app);

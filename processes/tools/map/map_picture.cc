@@ -64,7 +64,7 @@ std::vector<ChartSeries> People(const FourDMap& map) {
   std::vector<ChartSeries> series;
   for (const auto& [id, path] : paths) {
     if (path.size() < kMinPersonFrames) continue;
-    series.push_back({series.empty() ? "people, a colour each" : "", ColorOf(id), 2, path});
+    series.push_back({series.empty() ? "people, one colour each" : "", ColorOf(id), 2, path});
   }
   return series;
 }

@@ -21,6 +21,7 @@ struct ReplayNode {
   std::vector<std::string> publishes;  ///< its output channels
 };
 
+/// What Replay() writes, and how it runs.
 struct ReplayOptions {
   std::string out_path;        ///< log of what the nodes published; empty: none is written
   bool writes_inputs = false;  ///< whether the inputs are in it as well

@@ -70,7 +70,7 @@ std::string OwnerOf(const std::string& text, const Configs& configs) {
     for (const std::string& known : config.Keys()) all_keys.push_back(known);
     if (!config.Has(key)) continue;
     if (!owner.empty()) {
-      throw InputError("--set '" + text + "': more than one process has this key; say " + owner +
+      throw InputError("--set '" + text + "': more than one process has this key; write " + owner +
                        ":" + key + " or " + process + ":" + key);
     }
     owner = process;
@@ -87,7 +87,7 @@ void AddOverride(const std::string& text, const Configs& configs, Assignments* a
   const std::string process =
       assignment.process.empty() ? OwnerOf(text, configs) : assignment.process;
   if (configs.count(process) == 0) {
-    throw InputError("--set '" + text + "': " + process + " is no part of a replay");
+    throw InputError("--set '" + text + "': " + process + " is not part of a replay");
   }
   (*assignments)[process].push_back(assignment.text);
 }
@@ -135,7 +135,7 @@ void ClaimOutputs(const std::vector<std::string>& names, OutputFolder* results) 
     if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
         names.begin() + static_cast<std::ptrdiff_t>(i)) {
       throw InputError(results->PathOf(names[i]) +
-                       ": is to be written twice; give each output a name of its own");
+                       ": would be written twice; give each output its own name");
     }
   }
   for (const std::string& name : names) results->Claim(name, "run");
@@ -155,7 +155,7 @@ void SetConfig(const std::string& path, ReplaySetup* setup) {
   if (std::find(names.begin(), names.end(), stem) == names.end()) {
     const std::string hint = DidYouMean(stem, names);
     throw InputError("--config " + path +
-                     ": the name does not say of which process it is: frontend.yaml, "
+                     ": the name does not tell which process it belongs to: frontend.yaml, "
                      "human_tracker.yaml, optimizer.yaml or map_recorder.yaml" +
                      hint);
   }

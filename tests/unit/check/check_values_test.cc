@@ -95,7 +95,7 @@ TEST(CheckTimesValuesTest, AGapIsFromHalfAnIntervalMoreOn) {
 TEST(CheckTimesValuesTest, OrderIsAnErrorForEachImage) {
   const FindingList list = Timed({0, 100000, 100000, 50000, 200000});
   EXPECT_EQ(list.count(Severity::kError), 2);
-  EXPECT_TRUE(Holds(list.findings()[0].what, "image 2 has the time of the one before"));
+  EXPECT_TRUE(Holds(list.findings()[0].what, "image 2 has the same time as the previous one"));
   EXPECT_TRUE(Holds(list.findings()[1].what, "image 3 comes 0.05 s before"));
 }
 

@@ -223,7 +223,8 @@ TEST_F(SequenceValuesTest, KittiPosesAreRowsOfMatrices) {
   EXPECT_LT((pose->rotation * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
   EXPECT_LT((pose->rotation * Eigen::Vector3d::UnitY() + Eigen::Vector3d::UnitX()).norm(), 1e-12);
   folder_.Write("poses.txt", "1 0 0 0 0 1 0 0 0 0 -1 0\n");
-  EXPECT_TRUE(Holds(ErrorOf([&] { ReadKittiPoses(folder_.PathOf("poses.txt")); }), "no rotation"));
+  EXPECT_TRUE(
+      Holds(ErrorOf([&] { ReadKittiPoses(folder_.PathOf("poses.txt")); }), "not a rotation"));
 }
 
 constexpr char kRect[] = "R_rect 0 -1 0 1 0 0 0 0 1\n";
@@ -273,7 +274,7 @@ TEST_F(SequenceValuesTest, KittiTrackingGoesThroughAllTransforms) {
 
   folder_.Write("calib/0004.txt", std::string("R_rect 1 0 0 0 1 0 0 0 -1\n") + kOthers);
   EXPECT_TRUE(Holds(ErrorOf([&] { OpenStereoSequence(folder_.PathOf("image_02/0004")); }),
-                    "0004.txt:1: is no rotation"));
+                    "0004.txt:1: is not a rotation"));
 }
 
 TEST_F(SequenceValuesTest, TheScaleOfTheMapIsThatOfTheFirstRow) {

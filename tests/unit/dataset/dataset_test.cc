@@ -193,7 +193,7 @@ TEST_F(DatasetTest, NamesWhatIsWrongWithTheFolder) {
   EXPECT_EQ(OpenMessage().find(Path("times.txt") + ": holds 1 times for 2 images"), 0u);
   Write("times.txt", "2\n1\n");
   EXPECT_EQ(OpenMessage(),
-            Path("times.txt") + ":2: time '1' does not come after the one before, '2'");
+            Path("times.txt") + ":2: time '1' does not come after the previous one, '2'");
   Write("times.txt", "0\n1\n");
   Write("calib.json", R"({"fx": 500, "cx": 321, "cy": 181, "baseline_m": 0.2})");
   EXPECT_EQ(OpenMessage().find(Path("calib.json") + ": key 'fy' is missing"), 0u);
@@ -204,7 +204,7 @@ TEST_F(DatasetTest, NamesWhatIsWrongWithTheFolder) {
   Write("calib.json", "{");
   EXPECT_EQ(OpenMessage().find(Path("calib.json") + ":1: column 2: "), 0u) << OpenMessage();
   Write("calib.json", "[1]");
-  EXPECT_EQ(OpenMessage().find(Path("calib.json") + ": is no JSON object"), 0u);
+  EXPECT_EQ(OpenMessage().find(Path("calib.json") + ": is not a JSON object"), 0u);
   WriteCalibration();
   Write("gt_pose.txt", "0 1 2 3 0 0 0 1\n0.1 1 2 3 0 0 0 2\n");
   EXPECT_EQ(OpenMessage(), Path("gt_pose.txt") + ":2: the quaternion is not of length 1");
@@ -376,7 +376,7 @@ TEST_F(KittiTrackingTest, NamesWhatIsWrong) {
   Write("training/calib/0013.txt",
         "P2: 700 0 320 70 0 700 180 0 0 0 1 0\nP3: 700 0 320 -280 0 700 180 0 0 0 1 0\n"
         "R_rect 1 0 0 0 1 0 0 0 2\n");
-  EXPECT_NE(Message().find("calib/0013.txt:3: is no rotation"), std::string::npos) << Message();
+  EXPECT_NE(Message().find("calib/0013.txt:3: is not a rotation"), std::string::npos) << Message();
 }
 
 // The sequences that the project is measured on.

@@ -121,7 +121,7 @@ TEST_F(ImageReadersValuesTest, ASecondSeriesIsARivalFromAQuarterOn) {
   folder_.Write("other0.png");
   EXPECT_EQ(ListImages(folder_.path()).files.size(), 8u);
   folder_.Write("other1.png");
-  EXPECT_TRUE(Holds(ErrorOf([&] { ListImages(folder_.path()); }), "two forms of names"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { ListImages(folder_.path()); }), "two kinds of names"));
   folder_.Write("left8.png");
   const ImageNames names = ListImages(folder_.path());
   EXPECT_EQ(names.files.size(), 9u);
@@ -283,8 +283,8 @@ TEST(ImageFileValuesTest, HowSizesDiffer) {
   EXPECT_TRUE(Holds(text(360, 640), "turned by 90"));
   EXPECT_FALSE(Holds(text(360, 200), "turned"));
   EXPECT_TRUE(Holds(text(320, 180), "0.5 times as large"));
-  EXPECT_TRUE(Holds(text(320, 90), "other proportions"));
-  EXPECT_TRUE(Holds(text(160, 180), "other proportions"));
+  EXPECT_TRUE(Holds(text(320, 90), "another aspect ratio"));
+  EXPECT_TRUE(Holds(text(160, 180), "another aspect ratio"));
   EXPECT_TRUE(Holds(text(320, 180), "has 320 x 180 px, x 640 x 360 px"));
 }
 

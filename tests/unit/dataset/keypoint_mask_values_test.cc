@@ -77,7 +77,7 @@ TEST_F(KeypointMaskValuesTest, TwoLayoutsAreRefusedWithBothNames) {
   const std::string c = folder_.Write("c.txt", Row(26));
   const std::string error = ErrorOf([&] { FindLayout({a, b, c}); });
   EXPECT_EQ(error, c + ": holds people in Halpe-26, but " + a +
-                       " in COCO-18; one layout a data set is wanted");
+                       " in COCO-18; all of a data set must have the same layout");
 }
 
 std::vector<std::uint8_t> Png(const cv::Mat& picture) {

@@ -376,17 +376,18 @@ TEST_F(TrajectoryFileTest, ReadsBothFormats) {
 }
 
 TEST_F(TrajectoryFileTest, NamesTheLine) {
-  EXPECT_EQ(MessageFor(""), path_ + ": holds no pose");
-  EXPECT_EQ(MessageFor("1 2 3\n"),
-            path_ +
-                ":1: holds 3 numbers a row: wanted are 8 (t x y z qx qy qz qw, TUM), 12 (KITTI), "
-                "17 (EuRoC's state_groundtruth), 7 (x y z qx qy qz qw, TartanAir) or 4 (t x y z)");
+  EXPECT_EQ(MessageFor(""), path_ + ": contains no pose");
+  EXPECT_EQ(
+      MessageFor("1 2 3\n"),
+      path_ +
+          ":1: holds 3 numbers per row: expected are 8 (t x y z qx qy qz qw, TUM), 12 (KITTI), "
+          "17 (EuRoC's state_groundtruth), 7 (x y z qx qy qz qw, TartanAir) or 4 (t x y z)");
   EXPECT_EQ(MessageFor("1 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 x\n"),
             path_ + ":2: 'x' is not a finite number");
   EXPECT_EQ(MessageFor("2 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1\n"),
             path_ +
-                ":2: time 1 lies before that of the row above; put the rows in the order of "
-                "their times (sort -g), each once");
+                ":2: time 1 is before that of the row above; sort the rows by time (sort -g), "
+                "without duplicates");
   EXPECT_EQ(MessageFor("2 1 2 3 0 0 0 2\n"),
             path_ +
                 ":1: the quaternion is not of length 1 but 2.000000; the columns are not those "

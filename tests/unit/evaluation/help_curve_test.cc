@@ -126,7 +126,8 @@ TEST(HelpCurve, ReadsRunsAndNamesTheLine) {
   EXPECT_NE(MessageOf([&] { ReadCappedRuns(path); }).find(path + ":1: "), std::string::npos);
   // Found by fuzzing: a number that no int holds.
   std::ofstream(path) << R"({"sequence": "a", "mode": "on", "max_observations": 3e98, )" << row;
-  EXPECT_NE(MessageOf([&] { ReadCappedRuns(path); }).find("is no whole number"), std::string::npos);
+  EXPECT_NE(MessageOf([&] { ReadCappedRuns(path); }).find("is not a whole number"),
+            std::string::npos);
   std::filesystem::remove(path);
   EXPECT_EQ(MessageOf([&] { ReadCappedRuns(path); }),
             path + ": cannot be read: No such file or directory");

@@ -229,7 +229,7 @@ TEST_F(UserCases, Case03bNoMatchNamesBothRangesAndTheLikelyCause) {
   Style late;
   late.start_s = kStart + 0.05;
   EXPECT_TRUE(Has(ErrorOf(Tum(Estimated(Walk(100)), late), truth),
-                  "the nearest times lie 0.050000 s apart"));
+                  "the nearest times are 0.050000 s apart"));
 }
 
 TEST_F(UserCases, Case05KittiRowsThatLackTheFirst) {
@@ -315,9 +315,9 @@ TEST_F(UserCases, Case08bOtherTablesAreReadOrNamed) {
   for (char& c : decimal_commas) c = c == '.' ? ',' : c;
   EXPECT_TRUE(Has(ErrorOf(decimal_commas, Tum(Walk(100))),
                   "estimate.txt:1: '1400000000,000000': "
-                  "numbers have commas"));
+                  "numbers have decimal commas"));
   EXPECT_TRUE(Has(ErrorOf("{\"poses\": [1]}\n", Tum(Walk(100))), "is JSON"));
-  EXPECT_TRUE(Has(ErrorOf("1,2,3,4,5,6,7,8,9\n", Tum(Walk(100))), "holds 9 numbers a row"));
+  EXPECT_TRUE(Has(ErrorOf("1,2,3,4,5,6,7,8,9\n", Tum(Walk(100))), "holds 9 numbers per row"));
   const std::vector<TrajectoryPose> walk = Walk(100);
   EXPECT_TRUE(Has(ErrorOf(Tum({walk.rbegin(), walk.rend()}), Tum(walk)), "backwards in time"));
 }
@@ -465,8 +465,7 @@ TEST_F(UserCases, Case29InvertedPoses) {
   EvaluationOptions options;
   options.is_estimate_inverted = true;
   ExpectAsGood(Evaluate(Tum(inverted), Tum(Walk(100)), options));
-  EXPECT_TRUE(
-      Has(ErrorOf(Tum(Estimated(Walk(100))), Tum(Walk(100)), options), "leave --inverted out"));
+  EXPECT_TRUE(Has(ErrorOf(Tum(Estimated(Walk(100))), Tum(Walk(100)), options), "omit --inverted"));
 
   std::vector<TrajectoryPose> truth = Walk(100);
   for (TrajectoryPose& pose : truth) pose = Inverse(pose);
@@ -496,7 +495,7 @@ TEST_F(UserCases, Case29bLostFramesWrittenAsSomething) {
   const std::string last = TumRow(Estimated(Walk(100))[49], {});
   const TrajectoryReport frozen = Evaluate(
       WithLostRows(last.substr(last.find(' '), last.size() - last.find(' ') - 1)), Tum(Walk(100)));
-  EXPECT_TRUE(Says(frozen, "WARNING", "10 poses of the estimate repeat the one before"));
+  EXPECT_TRUE(Says(frozen, "WARNING", "10 poses of the estimate repeat the previous one"));
 }
 
 TEST_F(UserCases, Case29cAStartAtTheOriginIsNoLoss) {

@@ -76,7 +76,7 @@ TEST_F(MapExportBooksTest, EachPoseStandsInItsFile) {
   map.ground_truth_axes = 1;
   Export(map);
   EXPECT_EQ(Text("trajectory.tum"),
-            "# left out: 2 poses whose time is not later than that of an image before them\n" +
+            "# left out: 2 poses whose time is not later than that of an earlier image\n" +
                 Row("1.000001", "1.000", "1.250", "-1.000") +
                 Row("2.000002", "3.000", "3.250", "-3.000") +
                 Row("3.000003", "4.000", "4.250", "-4.000"));

@@ -336,7 +336,7 @@ TEST_F(MapFileValuesTest, NothingBehindAChunkWithoutSenseCounts) {
   const FourDMap map = Read();
   EXPECT_FALSE(map.is_closed);
   EXPECT_TRUE(map.frames.empty());
-  EXPECT_EQ(summary_.drop_reason, "2 chunks from the first on that makes no sense");
+  EXPECT_EQ(summary_.drop_reason, "2 chunks, starting at the first invalid one");
 }
 
 TEST_F(MapFileValuesTest, EveryFlippedBitOfAChunkIsNoticed) {

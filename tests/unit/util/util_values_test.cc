@@ -152,7 +152,7 @@ TEST_F(UtilValuesTest, AFileDeepInAnInputIsFoundUnderAnotherName) {
   fs::create_hard_link(deep, folder_.PathOf("other"));
   EXPECT_TRUE(
       Holds(ErrorOf([&] { CheckNoInput(folder_.PathOf("other"), {folder_.PathOf("input")}); }),
-            "lies in the input folder"));
+            "is in the input folder"));
   EXPECT_NO_THROW(CheckNoInput(folder_.Write("free"), {folder_.PathOf("input")}));
 }
 
@@ -170,7 +170,8 @@ TEST_F(UtilValuesTest, AFolderOfResultsFromRunToRun) {
     folder.Claim("two", "h");
     folder_.Write("results/two", "22");
     for (const char* name : {"../x", "/x", "", "a/./b", "a\nb"}) {
-      EXPECT_TRUE(Holds(ErrorOf([&] { folder.Claim(name, "g"); }), "is no name for a result"))
+      EXPECT_TRUE(
+          Holds(ErrorOf([&] { folder.Claim(name, "g"); }), "is not a valid name for a result"))
           << name;
     }
     EXPECT_TRUE(
