@@ -15,8 +15,8 @@
 namespace airdos {
 namespace {
 
-/// Points of the object are numbered one frame after the other: their number within the frame is
-/// that of the model's point.
+/// The object's points are numbered consecutively over the frames: within a frame, a point's number
+/// is that of the model's point.
 struct DynamicPoint {
   int frame = 0;
   int number = 0;
@@ -154,7 +154,7 @@ class Reader {
   double sigma_m_ = 1;
   double motion_sigma_m_ = 1;
   Se3 motion_W_;
-  std::map<int, int> landmark_;  // index in the problem, by number in the file; below likewise
+  std::map<int, int> landmark_;  // index in the problem, by number in the file; likewise below
   std::map<int, DynamicPoint> dynamic_;
   std::map<int, Eigen::Vector3d> start_W_;
   std::map<int, int> num_in_frame_;

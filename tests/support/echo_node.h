@@ -11,13 +11,14 @@
 
 namespace airdos {
 
+/// The messages of one frame.
 struct EchoInputs {
   std::optional<image_t> left;
   std::optional<image_t> right;
 };
 
-/// The smallest frame node: says on ECHO what it was given, as (bytes of the left image, bytes of
-/// the right image, baseline), -1 where an image was missing.
+/// The smallest frame node: publishes on ECHO what it received, as (bytes of the left image, bytes
+/// of the right image, baseline), with -1 for a missing image.
 class EchoNode : public FrameNode<EchoInputs> {
  public:
   static constexpr char kEcho[] = "ECHO";

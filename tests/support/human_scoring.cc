@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kMinVisibleJoints = 5;
 constexpr double kMinHeightPx = 45;
-constexpr double kMaxMatchPerHeight = 0.15;  // mean distance of joints, of the height
+constexpr double kMaxMatchPerHeight = 0.15;  // mean distance of joints, relative to the height
 
 double Percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
@@ -65,9 +65,9 @@ double DepthOf(const TruePerson& person) {
   return *Median(depths);
 }
 
-// Mean distance in px, over the joints both have, from a true person's projection, each joint at
-// most a tenth of the height so that outliers do not decide; nothing where it is not in front of
-// the camera.
+// Mean distance in px from a true person's projection, over the joints that both have. Each joint
+// counts at most a tenth of the height, to limit the influence of outliers. Nothing if the person
+// is not in front of the camera.
 std::optional<double> Distance(const StereoCamera& camera, const TruePerson& truth,
                                const BodyKeypoints& seen, bool is_right) {
   const double depth_m = DepthOf(truth);
@@ -91,7 +91,7 @@ std::optional<double> Distance(const StereoCamera& camera, const TruePerson& tru
   return best;
 }
 
-// Which true person each of the detections of one image is, one to one.
+// Finds the true person for each detection in one image, one-to-one.
 std::vector<std::optional<std::int64_t>> Identify(const StereoCamera& camera,
                                                   const TrueFrame& truth,
                                                   const std::vector<BodyKeypoints>& people,
@@ -246,7 +246,7 @@ HumanScore ScoreCrossing(const HumanTrackerOptions& options, const std::string& 
   IdentityEvaluator identities;
   for (std::size_t k = 0; k < sequence->num_frames(); ++k) {
     const SequenceFrame file = sequence->Load(k);
-    const std::clock_t start = std::clock();  // of this process: others' load does not count
+    const std::clock_t start = std::clock();  // CPU time of this process, regardless of other load
     const PeopleFrame frame = ToPeopleFrame(file);
     const TrackedFrame tracked = tracker.Process(sequence->camera(), frame);
     score.frame_ms.push_back(1000.0 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);

@@ -68,7 +68,7 @@ class Maker {
     return Boxplus(T_W_C, delta);
   }
 
-  /// Fills the measurement of anything that has one.
+  /// Fills in the measurement of any kind of observation.
   template <class Observation>
   void Measure(const Eigen::Vector3d& p_W, Observation* observation) {
     const Eigen::Vector3d p_C =

@@ -7,7 +7,8 @@
 namespace airdos {
 namespace {
 
-/// Well mixed bits of a lattice point (the finalizer of MurmurHash3 over a sum of odd multiples).
+/// Well-mixed bits for a lattice point (the finalizer of MurmurHash3 applied to a sum of odd
+/// multiples).
 double LatticeValue(std::uint32_t seed, std::int32_t x, std::int32_t y) {
   std::uint32_t bits = seed * 0x9e3779b1u + static_cast<std::uint32_t>(x) * 0x85ebca77u +
                        static_cast<std::uint32_t>(y) * 0xc2b2ae3du;
@@ -50,7 +51,7 @@ cv::Mat NoisePicture(int width, int height, std::uint32_t seed, double shift_u_p
 RenderedScene::RenderedScene(std::uint32_t seed) : seed_(seed) {
   boxes_.push_back({{-6, -2.4, -8}, {6, 1.6, 12}});
   std::mt19937 random(seed);
-  // Drawn from raw numbers: std::uniform_real_distribution differs between standard libraries.
+  // Computed from raw numbers: std::uniform_real_distribution differs between standard libraries.
   const auto uniform = [&random](double low, double high) {
     return low + (high - low) * static_cast<double>(random()) / 4294967295.0;
   };

@@ -13,7 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A person who faces the camera, 100 px tall, COCO-18 order: where each joint is beside the neck.
+/// A person facing the camera, 100 px tall, in COCO-18 order: position of each joint relative to
+/// the neck.
 constexpr std::array<std::array<double, 2>, 18> kStanding = {{{0, -12},
                                                               {0, 0},
                                                               {-10, 1},
@@ -39,7 +40,7 @@ SmallSequence::Row PersonAt(double u_px, double v_px) {
   return row;
 }
 
-/// The mask of a detector: the skeleton, thick.
+/// A detector's mask: the skeleton with thick lines.
 void Paint(const SmallSequence::Row& person, cv::Mat* mask) {
   constexpr std::array<std::array<int, 2>, 14> kBones = {{{0, 1},
                                                           {1, 2},
