@@ -55,9 +55,9 @@ class HumanTracks {
 
   /// Fills `problem->humans` from the newest frames, which `problem->frames` must hold.
   void AddTo(BundleProblem* problem) const;
-  /// Takes joints back from a solved problem, relative to its cameras. Joints at impossible
-  /// positions for a body are not taken, and neither are lengths: those come from the measurements
-  /// of all frames.
+  /// Takes joints back from a solved problem, relative to its cameras. Joints that ended up behind
+  /// the camera or impossibly far away are not taken, and neither are lengths: those come from the
+  /// measurements of all frames.
   void Absorb(const BundleProblem& problem);
 
   /// Everyone seen in `frame` (one of frames()), with `T_W_C` as its camera and the motions of
