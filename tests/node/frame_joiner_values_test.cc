@@ -48,7 +48,7 @@ TEST(FrameJoinerValues, AFrameIsSettledOnceNothingOlderCanCome) {
   EXPECT_TRUE(joiner.Oldest()->settled) << "2 + 2 < 5";
   std::int64_t num_skipped = -1;
   joiner.FinishOldest(&num_skipped);
-  EXPECT_EQ(num_skipped, 0) << "before the first are unknown";
+  EXPECT_EQ(num_skipped, 0) << "before the first nothing is known";
   EXPECT_EQ(joiner.Oldest()->key.seq, 4);
   EXPECT_TRUE(joiner.Oldest()->settled) << "the next of the last";
   EXPECT_EQ(Add(0, 3, &joiner), Arrival::kLate) << "done";

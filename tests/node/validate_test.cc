@@ -213,9 +213,9 @@ TEST(ValidateTest, PoseFrameDoneAndStatus) {
 
 // Found by fuzzing: encoding such a text again aborted.
 TEST(ValidateTest, Texts) {
-  ExpectReject<frame_done_t>("letters contains a zero byte",
+  ExpectReject<frame_done_t>("letters with a zero in it",
                              [](frame_done_t* m) { m->process = std::string("a\0b", 3); });
-  ExpectReject<frame_done_t>("process 1001 letters is too long",
+  ExpectReject<frame_done_t>("process 1001 letters are too many",
                              [](frame_done_t* m) { m->process.assign(1001, 'a'); });
   using M = process_status_t;
   ExpectReject<M>("zero in it", [](M* m) { m->version = std::string(1, '\0'); });

@@ -177,7 +177,7 @@ TEST_F(UserCases, CaseC07WhatCannotBeWrittenIsOneLineAndReplayLeavesNothingBehin
   const std::string log = WriteLog("in.lcm", 40);
   const std::vector<std::string> before = Names();
   for (const char* option : {"--out", "--timing"}) {
-    ExpectRefused({"airdos-replay", log, option, Path("none/x")}, "there is not a folder");
+    ExpectRefused({"airdos-replay", log, option, Path("none/x")}, "there is no folder");
     ExpectRefused({"airdos-replay", log, option, folder_.string()}, "is a folder");
   }
   ExpectRefused({"airdos-replay", log, "--run-dir", log}, "in.lcm");

@@ -40,7 +40,7 @@ TEST(ConfigReaderTest, NamesFileKeyAndValue) {
   int count = 0;
   double ratio = 0;
   EXPECT_EQ(MessageOf([&] { reader.Read("a.count", &count, 5, 10); }),
-            "x.yaml: key 'a.count' with value '3': must be between 5 and 10");
+            "x.yaml: key 'a.count' with value '3': must lie between 5 and 10");
   EXPECT_EQ(MessageOf([&] { reader.Read("mode", &ratio, 0, 1); }),
             "x.yaml: key 'mode' with value 'fast': must be a number");
   EXPECT_EQ(MessageOf([&] { reader.Read("a.none", &ratio, 0, 1); }),
