@@ -195,7 +195,7 @@ TEST(UserCases, Case86cTheOptimizerPredictsNothingIntoThePast) {
     return estimate.status != state_estimate_t::STATUS_INVALID;
   };
   constexpr std::int8_t kNone = -1;
-  EXPECT_FALSE(work(0, 1000, static_features_t::STATE_INVALID)) << "are unknown yet";
+  EXPECT_FALSE(work(0, 1000, static_features_t::STATE_INVALID)) << "nothing is known yet";
   EXPECT_TRUE(work(1, 2000, static_features_t::STATE_INITIALIZING));
   EXPECT_TRUE(work(2, 3000, kNone)) << "predicted";
   EXPECT_FALSE(work(3, 1500, kNone));

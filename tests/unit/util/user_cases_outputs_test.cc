@@ -122,8 +122,7 @@ TEST_F(UserCases, CaseC01AFileOfSomebodyElseNeedsForce) {
   EXPECT_EQ(MessageOf([&] { CheckOutputFile(path, {{}, true}); }), "");
   EXPECT_EQ(MessageOf([&] { CheckOutputFile("/dev/null", {}); }), "");
   EXPECT_EQ(MessageOf([&] { CheckOutputFile("/dev/stdout", {}); }), "");
-  EXPECT_TRUE(
-      Has(MessageOf([&] { CheckOutputFile(Path("none/x"), {}); }), "there is not a folder"));
+  EXPECT_TRUE(Has(MessageOf([&] { CheckOutputFile(Path("none/x"), {}); }), "there is no folder"));
   EXPECT_TRUE(Has(MessageOf([&] { CheckOutputFile(Path("thesis.json/x"), {}); }), "written"));
   EXPECT_TRUE(Has(MessageOf([&] { CheckOutputFile(folder_.string(), {}); }), "is a folder"));
 }
