@@ -70,10 +70,10 @@ struct CheckOptions {
   /// kQuick: only what is checked before a run.
   enum class Depth { kQuick, kFull };
   Depth depth = Depth::kFull;
-  std::size_t max_frames = 20;       ///< whose pictures are looked at, evenly spread
-  std::size_t odometry_frames = 30;  ///< to compare with the ground truth; 0: none
+  std::size_t max_frames = 20;       ///< whose pictures are examined, evenly spread
+  std::size_t odometry_frames = 30;  ///< to compare with the ground truth; 0 for none
   std::string calibration = {};      ///< of a folder: SequenceOptions::calibration
-  bool all = false;                  ///< look at the pictures of all frames
+  bool all = false;                  ///< examine the pictures of all frames
 
   bool is_quick() const { return depth == Depth::kQuick; }
 };

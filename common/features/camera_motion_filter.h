@@ -10,8 +10,8 @@ namespace airdos {
 
 /// Settings of the CameraMotionFilter.
 struct CameraMotionFilterOptions {
-  /// Standard deviation per axis of the acceleration until the carrier shows another one. Then
-  /// three times the median of what the last frames showed, between the bounds.
+  /// Standard deviation per axis of the acceleration: first `start`, then three times the median
+  /// over the last frames, limited to `floor` .. `ceiling`.
   double linear_start_m_s2 = 5;
   double linear_floor_m_s2 = 3;
   double linear_ceiling_m_s2 = 30;
@@ -21,7 +21,7 @@ struct CameraMotionFilterOptions {
   /// Standard deviation of the velocity before the first step.
   double initial_speed_m_s = 2;
   double initial_turn_rad_s = 1;
-  /// A velocity that nobody measures falls off to a third in this time.
+  /// Without measurements, the velocity decays to 1/e in this time.
   double memory_s = 3;
 };
 

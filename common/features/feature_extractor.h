@@ -13,8 +13,8 @@ namespace airdos {
 /// Settings of the FeatureExtractor.
 struct FeatureExtractorOptions {
   int num_levels = 8;
-  int fast_threshold = 8;  ///< grey levels; low, because crowded scenes leave only faint texture
-  int cell_size_px = 32;   ///< of the grid over which features are spread, at each level
+  int fast_threshold = 8;  ///< grey levels; low, since crowds leave only faint texture
+  int cell_size_px = 32;   ///< of the grid for spreading features, at each level
   int max_features_per_cell = 5;
 };
 

@@ -43,7 +43,7 @@ struct LocalLandmark {
 struct LocalMapOptions {
   int max_landmarks = 6000;
   int max_frames_unconfirmed = 8;  ///< a landmark seen once is dropped after so many frames
-  double min_found_ratio = 0.15;   ///< of the frames it was expected in
+  double min_found_ratio = 0.15;   ///< of the frames in which it was expected
 };
 
 /// The optimizer's result for the frames and landmarks around frame `newest` (MAP_UPDATE).

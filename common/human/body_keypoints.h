@@ -37,8 +37,8 @@ BodyKeypoints SwapSides(const BodyKeypoints& person, SideSwap swap);
 /// per_confidence * (full_confidence - confidence), limited to 1..max_factor.
 struct KeypointNoise {
   double min_px = 0.9;
-  double per_height = 0.009;      ///< of the person's standing height in px
-  double full_confidence = 0.85;  ///< from here on a joint counts as plainly seen
+  double per_height = 0.009;      ///< relative to the person's standing height in px
+  double full_confidence = 0.85;  ///< from here on a joint counts as clearly visible
   double per_confidence = 3.6;    ///< 1.9 times at confidence 0.6, 3 times at 0.3
   double max_factor = 4;
 

@@ -9,11 +9,11 @@ namespace airdos {
 
 /// Settings of RefineDisparity().
 struct DisparityRefinerOptions {
-  double patch_per_height = 0.03;  ///< half the side of the patch, of the person's height in px
+  double patch_per_height = 0.03;  ///< half the patch size, relative to the person's height in px
   int min_half_patch_px = 3;
   int max_half_patch_px = 9;
   double min_correlation = 0.75;
-  double max_return_error_px = 0.7;  ///< allowed between the way to the right image and back
+  double max_return_error_px = 0.7;  ///< allowed error after matching forth and back
   double min_contrast = 3;           ///< standard deviation of the patch in grey levels
 };
 

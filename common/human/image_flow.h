@@ -10,10 +10,10 @@ namespace airdos {
 
 /// Settings of the ImageFlow.
 struct ImageFlowOptions {
-  int window_px = 13;                ///< side of the patch that is followed
+  int window_px = 13;                ///< side of the tracked patch
   int num_levels = 4;                ///< pyramid levels above the full image
-  double max_return_error_px = 1;    ///< between a point and its way there and back
-  double min_shift_response = 0.05;  ///< below it the shift of the whole image is taken as none
+  double max_return_error_px = 1;    ///< allowed error after tracking forth and back
+  double min_shift_response = 0.05;  ///< below it the whole image's shift is taken as zero
 };
 
 /// Follows points from one image of a camera to the next by pyramidal Lucas-Kanade, with a

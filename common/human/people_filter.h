@@ -38,14 +38,14 @@ struct PersonConstraint {
 
 /// Settings of the PeopleFilter.
 struct PeopleFilterOptions {
-  double acceleration_m_s2 = 3;          ///< per axis, until a person shows another one
-  double min_acceleration_factor = 0.3;  ///< of it, for a person who keeps a velocity exactly
+  double acceleration_m_s2 = 3;          ///< per axis, initial value for each person
+  double min_acceleration_factor = 0.3;  ///< lower limit for a very steady person
   double max_acceleration_factor = 5;
   double initial_speed_m_s = 1;  ///< per axis
-  double wobble_m = 0.03;        ///< of each joint against the body in 0.1 s
-  double max_joint_sigmas = 4;   ///< a joint further off than that is left out
+  double wobble_m = 0.03;        ///< of each joint relative to the body in 0.1 s
+  double max_joint_sigmas = 4;   ///< a joint that is farther off is left out
   int max_missed_frames = 5;     ///< then the person is forgotten
-  int min_seen_frames = 1;       ///< before a person says anything of the camera
+  int min_seen_frames = 1;       ///< before a person constrains the camera
 };
 
 /// Predicts where people will be. Each person is a constant-velocity filter in W: the body joints,

@@ -36,18 +36,18 @@ struct SimulationOptions {
   double step_s = 0.1;
   StereoCamera camera{640, 360, 400, 400, 320, 180, 0.25};
   CameraPath path;
-  double nearest_m = 2;  ///< limits of depth within which points are seen
+  double nearest_m = 2;  ///< depth limits within which points are visible
   double farthest_m = 30;
-  int static_per_frame = 30;  ///< at most; tracked landmarks come before new ones
+  int static_per_frame = 30;  ///< maximum; tracked landmarks take precedence
   std::vector<ObjectGroup> objects;
   double object_nearest_m = 4;  ///< from the camera, in the middle of the sequence
   double object_farthest_m = 10;
-  double min_seen_share = 0.9;  ///< of an object's points over all frames, else it is placed anew
+  double min_seen_share = 0.9;  ///< of an object's points, over all frames; else it is re-placed
   double max_object_speed_m_s = 1.5;
   double object_acceleration_m_s2 = 0.2;  ///< see RootMotion
-  bool has_point_noise = true;            ///< isotropic noise on points in camera axes; else pixels
+  bool has_point_noise = true;            ///< isotropic in camera axes; otherwise in pixels
   double point_sigma_m = 0.05;
-  double pixel_sigma_px = 1.0;    ///< of u_left, v and u_right each
+  double pixel_sigma_px = 1.0;    ///< of each of u_left, v and u_right
   double odometry_sigma_m = 0.1;  ///< of each step of the start values, per axis
   double odometry_sigma_deg = 0.3;
 };

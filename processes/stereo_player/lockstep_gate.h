@@ -15,15 +15,15 @@ namespace airdos {
 
 /// Which processes the LockstepGate waits for, and for how long.
 struct LockstepGateOptions {
-  std::vector<std::string> wait_for;  ///< names of processes as in STATUS; empty: never waits
+  std::vector<std::string> wait_for;  ///< process names as in STATUS; empty to never wait
   int frames_in_flight = 4;
-  double remind_s = 5;        ///< how often a silent process is named
-  double silence_s = 10;      ///< neither STATUS nor FRAME_DONE for longer: goes on without it
-  double no_progress_s = 60;  ///< STATUS but no FRAME_DONE for longer: goes on
-  /// The same of a process whose STATUS says that it has no frame to work on: those on the way to
+  double remind_s = 5;        ///< interval of reminders about a silent process
+  double silence_s = 10;      ///< gives up a process without STATUS and FRAME_DONE
+  double no_progress_s = 60;  ///< gives up a process without FRAME_DONE
+  /// The same for a process whose STATUS says that it has no frame to process: those in transit to
   /// it are lost.
   double idle_s = 10;
-  double start_s = 60;  ///< a process that is not there at the start
+  double start_s = 60;  ///< gives up a process that is absent at the start
 };
 
 /// Decides when the player may publish the next frame: once all processes that it waits for have

@@ -16,8 +16,8 @@ namespace airdos {
 
 /// Limits of the optimizer's memory of people.
 struct HumanTracksOptions {
-  int window_frames = 8;          ///< newest frames whose people are in the adjustment
-  int forget_after_frames = 100;  ///< the lengths of a person not seen for longer are forgotten
+  int window_frames = 8;          ///< newest frames whose people are adjusted
+  int forget_after_frames = 100;  ///< then the lengths of an unseen person are forgotten
   double min_disparity_px = 0.5;  ///< a joint with less has no depth and is left out
   double max_depth_m = 60;
 };

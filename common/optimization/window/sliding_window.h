@@ -17,18 +17,18 @@ namespace airdos {
 
 /// How the camera's own motion enters the adjustment.
 struct CameraMotionOptions {
-  bool use_acceleration = true;  ///< factor between three consecutive frames of the window
-  /// Its sigma, of the one that the front end predicts the newest frame with (which is generous). A
-  /// front end that gives none gets no factor.
+  bool use_acceleration = true;  ///< factor between three consecutive frames
+  /// Its sigma, relative to the one with which the frontend predicts the newest frame (a generous
+  /// one). A frontend that sends none gets no factor.
   double sigma_factor = 0.6;
 };
 
 /// Settings of the SlidingWindowOptimizer and its parts.
 struct SlidingWindowOptions {
   WindowMapOptions map;
-  BundleOptions bundle;  ///< `use_people` is the switch people: on
+  BundleOptions bundle;  ///< `use_people` is set by people.mode: on
   CameraMotionOptions camera_motion;
-  HumanTracksOptions people;  ///< its window is cut to that of the map
+  HumanTracksOptions people;  ///< its window is limited to that of the map
   TrustOptions trust;
   bool learn_track_noise = true;  ///< how steadily each person moves, see track_noise.h
   double publish_moved_m = 1e-4;  ///< a landmark that moved less is not reported again

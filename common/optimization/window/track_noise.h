@@ -9,18 +9,18 @@ namespace airdos {
 
 /// Settings of EstimateMotionNoise().
 struct TrackNoiseOptions {
-  /// What a track is taken for as long as it says nothing itself, and how far tracks differ from
-  /// it: the sigma of the logarithm of each value.
+  /// The noise assumed for a track until it provides evidence itself, and how far tracks differ
+  /// from it: the sigma of the logarithm of each value.
   MotionNoise prior{0.03, 3.0, 1.0};
   double prior_log_sigma = 1.0;
-  /// Uncertainty of the camera from frame to frame that the track is seen from: standard deviation
-  /// of the track's centre, per axis. At 0 what the camera errs counts as the person's doing, which
-  /// is the safe side: a value too large has people pass for steadier than they are.
+  /// Frame-to-frame uncertainty of the camera that sees the track: standard deviation of the
+  /// track's centre per axis. At 0, errors of the camera are attributed to the person, which is the
+  /// safe side; too large a value makes people appear steadier than they are.
   double camera_sigma_m = 0;
-  /// Bounds of what is believed.
+  /// Limits of the result.
   MotionNoise least{0.01, 0.1, 0.1};
   MotionNoise largest{0.3, 20.0, 20.0};
-  /// Squared whitened errors beyond this count as this: one wrong joint must not speak for a track.
+  /// Limit of a squared whitened error: one wrong joint must not decide the result for a track.
   double largest_chi2 = 25;
 };
 
@@ -39,7 +39,7 @@ MotionNoise EstimateMotionNoise(const TrackNoiseOptions& options, const BundlePr
 
 /// Settings of FindTrackBreaks().
 struct TrackBreakOptions {
-  double acceleration_m_s2 = 6;  ///< that nobody exceeds for long: sigma of the filter
+  double acceleration_m_s2 = 6;  ///< sigma of the filter; nobody exceeds it for long
   double camera_sigma_m = 0.1;   ///< of the poses from frame to frame, at the person
   double largest_chi2 = 30;      ///< of the centre's innovation, 3 degrees of freedom
 };

@@ -8,13 +8,13 @@ namespace airdos {
 
 /// Thresholds of TrustsPeople().
 struct TrustOptions {
-  /// People are not believed where the newest frame has at least so many static observations.
+  /// People are not believed if the newest frame has at least this many static observations.
   int min_static_observations = 15;
-  /// They must bring at least so many motion factors ...
+  /// They must contribute at least this many motion factors ...
   int min_motion_factors = 20;
   /// ... of which no more than this share was eliminated ...
   double max_eliminated_share = 0.25;
-  /// ... make the position at least so much more certain: sigma with people / sigma without ...
+  /// ... make the position more certain: sigma with people / sigma without at most this ...
   double max_relative_sigma = 0.9;
   /// ... and must not move the pose further than its covariance allows: bound of the squared
   /// Mahalanobis distance, chi-squared with 6 degrees of freedom, one in a thousand.

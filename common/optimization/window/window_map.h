@@ -16,11 +16,11 @@ namespace airdos {
 struct WindowMapOptions {
   int window_frames = 12;             ///< newest frames, whose poses are free
   int max_fixed_key_frames = 8;       ///< older frames that hold the window in place
-  int min_shared_landmarks = 15;      ///< a key frame with fewer in the window does not count
+  int min_shared_landmarks = 15;      ///< a key frame needs this many in common with the window
   double key_frame_max_shared = 0.6;  ///< a frame that shares less with the last key frame is kept
-  int key_frame_interval = 5;         ///< frames: at the latest then one is kept
+  int key_frame_interval = 5;         ///< frames; at the latest then one is kept
   int max_key_frames = 60;            ///< in memory
-  int forget_after_frames = 200;      ///< a landmark in no kept frame that was not seen for longer
+  int forget_after_frames = 200;      ///< applies to a landmark that no kept frame sees
   double min_disparity_px = 0.5;      ///< below it an observation cannot start a landmark
   int max_eliminations =
       2;  ///< an observation that failed in so many adjustments in a row is dropped

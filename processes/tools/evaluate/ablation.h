@@ -28,13 +28,13 @@ struct AblationErrors {
 
 /// Settings of an Ablation.
 struct AblationOptions {
-  int max_iterations = 1000;  ///< of each solve: enough to converge
+  int max_iterations = 1000;  ///< per solve; enough to converge
   double function_tolerance = 1e-10;
   bool compute_covariance = false;  ///< of the newest pose
   double rigidity_sigma_m = 0.01;
-  double stereo_rigidity_sigma_m = 0.02;  ///< where depths are as uncertain as stereo makes them
-  TrackNoiseOptions noise;                ///< how the motion of each object is weighed
-  int num_noise_passes = 2;  ///< adjustments from which the noise is learnt before the last one
+  double stereo_rigidity_sigma_m = 0.02;  ///< for depths as uncertain as those of stereo
+  TrackNoiseOptions noise;                ///< how the motion of each object is weighted
+  int num_noise_passes = 2;  ///< adjustments to learn the noise from, before the last one
 };
 
 /// Bundle adjustment over a whole simulated sequence, with the same start values for all rows. The

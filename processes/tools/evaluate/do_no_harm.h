@@ -14,12 +14,12 @@ namespace airdos {
 /// When people are believed in the measurement of do-no-harm.
 struct DoNoHarmOptions {
   AblationOptions ablation;
-  /// People are believed only if the static scene does not contradict them: its own residuals, at
-  /// the poses with people, may not add up to more than at its own solution by what chance allows
-  /// (a likelihood ratio with 6 degrees of freedom a free pose; so many sigmas above the mean) ...
+  /// People are believed only if the static scene does not contradict them: its residuals at the
+  /// poses with people may exceed those at its own solution only by what chance allows (a
+  /// likelihood ratio with 6 degrees of freedom per free pose; this many sigmas above the mean) ...
   double max_deviance_sigmas = 3;
-  /// ... and the static scene has not said everything already: sigma of the last position with
-  /// people over the one without.
+  /// ... and the static scene has not determined everything already: sigma of the last position
+  /// with people relative to the one without.
   double max_relative_sigma = 0.98;
 };
 /// As in the measurement of do-no-harm: as accurate as an estimator would be, not to ten digits.

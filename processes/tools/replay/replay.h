@@ -23,9 +23,9 @@ struct ReplayNode {
 
 /// What Replay() writes, and how it runs.
 struct ReplayOptions {
-  std::string out_path;        ///< log of what the nodes published; empty: none is written
-  bool writes_inputs = false;  ///< whether the inputs are in it as well
-  bool is_parallel = false;    ///< a thread for each node; results are the same
+  std::string out_path;                     ///< log of what the nodes publish; empty for none
+  bool writes_inputs = false;               ///< whether it includes the inputs
+  bool is_parallel = false;                 ///< one thread per node; results are the same
   std::function<void(double)> on_progress;  ///< called after each frame with 0..1; may be empty
 };
 

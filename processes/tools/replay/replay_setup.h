@@ -21,12 +21,13 @@ struct ReplaySetup {
                             ///< empty: no map is recorded (unless `overrides` names a folder)
   std::string people;       ///< "off", "mask_only", "on"; empty: as configured
   std::string masks;        ///< "off", "on"; empty: as configured or as `people` says
-  /// The last word: "process:section.key=value", or without process where one alone has the key.
+  /// Overrides, applied last: "process:section.key=value", or without process if only one has
+  /// the key.
   std::vector<std::string> overrides;
-  bool from_features = false;  ///< optimizer and map recorder alone, on a log of features
-  /// What is read, besides the configurations, and what may be replaced.
+  bool from_features = false;  ///< only optimizer and map recorder, on a log of features
+  /// What is read besides the configurations, and what may be replaced.
   OutputRules rules;
-  /// Files that will be written besides; those in the recorder's folder belong to its results.
+  /// Other files that will be written; those in the recorder's folder belong to its results.
   std::vector<std::string> outputs;
 };
 
