@@ -23,9 +23,9 @@ struct LandmarkMatch {
 };
 
 struct ProjectionSearch {
-  double radius_px = 8;    ///< at level 0, grows with the level
-  int max_hamming = 80;    ///< bits
-  double max_ratio = 0.9;  ///< best distance against second best
+  double radius_px = 8;       ///< at level 0, grows with the level
+  int max_hamming_bits = 80;  ///< bits
+  double max_ratio = 0.9;     ///< best distance against second best
 };
 
 /// A landmark that should be in view, and where.
@@ -54,7 +54,7 @@ std::vector<LandmarkMatch> MatchByProjection(const std::vector<VisibleLandmark>&
 /// check).
 std::vector<LandmarkMatch> MatchByDescriptor(
     const std::vector<std::pair<LandmarkId, const LocalLandmark*>>& landmarks,
-    const std::vector<Feature>& features, int max_hamming, double max_ratio);
+    const std::vector<Feature>& features, int max_hamming_bits, double max_ratio);
 
 }  // namespace airdos
 

@@ -298,7 +298,7 @@ FrontendOptions ReadFrontendOptions(ConfigReader* config) {
   config->Read("stereo.min_depth_m", &odometry.stereo.min_depth_m, 0.05, 100);
   config->Read("stereo.min_disparity_px", &odometry.stereo.min_disparity_px, 0.01, 50);
   config->Read("stereo.max_row_error_px", &odometry.stereo.max_row_error_px, 0.5, 10);
-  config->Read("stereo.max_hamming_bits", &odometry.stereo.max_hamming, 1, 256);
+  config->Read("stereo.max_hamming_bits", &odometry.stereo.max_hamming_bits, 1, 256);
   config->Read("stereo.min_correlation", &odometry.stereo.min_correlation, 0, 1);
   config->Read("stereo.rich_observations", &odometry.rich_observations, 1, 100000);
   config->Read("stereo.rich_min_correlation", &odometry.rich_min_correlation, 0, 1);
@@ -306,8 +306,8 @@ FrontendOptions ReadFrontendOptions(ConfigReader* config) {
   config->Read("map.max_frames_unconfirmed", &odometry.map.max_frames_unconfirmed, 1, 1000);
   config->Read("map.min_found_ratio", &odometry.map.min_found_ratio, 0, 1);
   config->Read("tracking.wide_radius_px", &odometry.wide_radius_px, 1, 500);
-  config->Read("tracking.wide_max_hamming_bits", &odometry.wide_max_hamming, 1, 256);
-  config->Read("tracking.narrow_max_hamming_bits", &odometry.narrow_max_hamming, 1, 256);
+  config->Read("tracking.wide_max_hamming_bits", &odometry.wide_max_hamming_bits, 1, 256);
+  config->Read("tracking.narrow_max_hamming_bits", &odometry.narrow_max_hamming_bits, 1, 256);
   config->Read("tracking.min_inliers_tracking", &odometry.min_inliers_tracking, 3, 1000);
   config->Read("tracking.min_inliers_weak", &odometry.min_inliers_weak, 1, 1000);
   config->Read("tracking.min_correlation", &odometry.min_correlation, 0, 1);

@@ -26,15 +26,15 @@ void ReadShared(ConfigReader* config, HumanTrackerOptions* options) {
 
 void ReadMatcher(ConfigReader* config, StereoMatcherOptions* matcher) {
   config->Read("pairing.min_joints", &matcher->min_joints, 1, kNumJoints);
-  config->Read("pairing.max_joint_cost", &matcher->max_joint_cost, 0.1, 1000);
-  config->Read("pairing.gate", &matcher->gate, 0.01, 1000);
+  config->Read("pairing.max_joint_squared_sigmas", &matcher->max_joint_squared_sigmas, 0.1, 1000);
+  config->Read("pairing.max_mean_squared_sigmas", &matcher->max_mean_squared_sigmas, 0.01, 1000);
   config->Read("pairing.body_extent_m", &matcher->body_extent_m, 0, 10);
 }
 
 void ReadTriangulator(ConfigReader* config, JointTriangulatorOptions* triangulator) {
-  config->Read("joints.max_row_error", &triangulator->max_row_error, 0.1, 1000);
+  config->Read("joints.max_row_error_sigmas", &triangulator->max_row_error_sigmas, 0.1, 1000);
   config->Read("joints.body_extent_m", &triangulator->body_extent_m, 0.01, 10);
-  config->Read("joints.max_extent_error", &triangulator->max_extent_error, 0.1, 1000);
+  config->Read("joints.max_extent_error_sigmas", &triangulator->max_extent_error_sigmas, 0.1, 1000);
   config->Read("joints.max_limb_ratio", &triangulator->max_limb_ratio, 1, 100);
   config->Read("joints.min_limb_ratio", &triangulator->min_limb_ratio, 0, 1);
   config->Read("joints.limb_sigmas", &triangulator->limb_sigmas, 0, 100);
@@ -48,12 +48,15 @@ void ReadTriangulator(ConfigReader* config, JointTriangulatorOptions* triangulat
 
 void ReadTracking(ConfigReader* config, HumanTrackerOptions* options) {
   HumanTrackOptions* track = &options->track;
-  config->Read("tracking.gate", &options->gate, 0.01, 1e6);
-  config->Read("tracking.left_only_gate", &options->left_only_gate, 0.01, 1e6);
-  config->Read("tracking.motion_sigma", &track->motion_sigma, 0.001, 10);
-  config->Read("tracking.motion_sigma_growth", &track->motion_sigma_growth, 0, 10);
-  config->Read("tracking.max_motion", &track->max_motion, 0.001, 100);
-  config->Read("tracking.max_motion_growth", &track->max_motion_growth, 0, 10);
+  config->Read("tracking.max_squared_sigmas", &options->max_squared_sigmas, 0.01, 1e6);
+  config->Read("tracking.left_only_max_squared_sigmas", &options->left_only_max_squared_sigmas,
+               0.01, 1e6);
+  config->Read("tracking.motion_sigma_per_height", &track->motion_sigma_per_height, 0.001, 10);
+  config->Read("tracking.motion_sigma_growth_per_height", &track->motion_sigma_growth_per_height, 0,
+               10);
+  config->Read("tracking.max_motion_per_height", &track->max_motion_per_height, 0.001, 100);
+  config->Read("tracking.max_motion_growth_per_height", &track->max_motion_growth_per_height, 0,
+               10);
   config->Read("tracking.depth_sigma", &track->depth_sigma, 0.001, 10);
   config->Read("tracking.appearance_sigma", &track->appearance_sigma, 0.001, 100);
   config->Read("tracking.max_missed_frames", &options->max_missed_frames, 0, 10000);
@@ -61,8 +64,10 @@ void ReadTracking(ConfigReader* config, HumanTrackerOptions* options) {
   config->Read("tracking.min_joints", &options->min_joints, 1, kNumJoints);
   config->Read("tracking.use_left_only", &options->use_left_only);
   config->Read("tracking.max_carried_frames", &options->max_carried_frames, 0, 1000);
-  config->Read("tracking.min_swap_gain", &options->min_swap_gain, 0, 1e6);
-  config->Read("tracking.min_swap_gain_doubtful", &options->min_swap_gain_doubtful, 0, 1e6);
+  config->Read("tracking.min_swap_gain_squared_sigmas", &options->min_swap_gain_squared_sigmas, 0,
+               1e6);
+  config->Read("tracking.min_doubtful_swap_gain_squared_sigmas",
+               &options->min_doubtful_swap_gain_squared_sigmas, 0, 1e6);
   config->Read("tracking.use_shift_vote", &options->use_shift_vote);
 }
 

@@ -14,18 +14,18 @@ void ReadMap(ConfigReader* config, WindowMapOptions* map) {
   config->Read("window.max_key_frames", &map->max_key_frames, 1, 10000);
   config->Read("window.forget_after_frames", &map->forget_after_frames, 1, 1000000);
   config->Read("window.min_disparity_px", &map->min_disparity_px, 0.01, 100);
-  config->Read("window.max_eliminations", &map->max_eliminations, 1, 100);
+  config->Read("window.max_rejections", &map->max_rejections, 1, 100);
 }
 
 void ReadSolver(ConfigReader* config, BundleOptions* bundle) {
   bundle->solver =
       static_cast<BundleSolver>(config->ReadChoice("solver.method", {"structured", "ceres"}));
   config->Read("solver.max_iterations", &bundle->max_iterations, 1, 1000);
-  config->Read("solver.max_iterations_after_elimination", &bundle->max_iterations_after_elimination,
-               0, 1000);
+  config->Read("solver.max_iterations_after_rejection", &bundle->max_iterations_after_rejection, 0,
+               1000);
   config->Read("solver.function_tolerance", &bundle->function_tolerance, 0, 1);
-  config->Read("solver.huber_static", &bundle->huber_static, kMinSigma, 1e6);
-  config->Read("solver.eliminate_static", &bundle->eliminate_static, kMinSigma, 1e9);
+  config->Read("solver.huber_static_sigmas", &bundle->huber_static_sigmas, kMinSigma, 1e6);
+  config->Read("solver.reject_static_sigmas", &bundle->reject_static_sigmas, kMinSigma, 1e9);
 }
 
 void ReadCameraMotion(ConfigReader* config, CameraMotionOptions* motion) {
@@ -43,7 +43,7 @@ void ReadPeople(ConfigReader* config, SlidingWindowOptions* window) {
   config->Read("people.forget_after_frames", &window->people.forget_after_frames, 1, 1000000);
   config->Read("people.min_disparity_px", &window->people.min_disparity_px, 0.01, 100);
   config->Read("people.max_depth_m", &window->people.max_depth_m, 0.1, 1e4);
-  config->Read("people.huber", &bundle->huber_dynamic, kMinSigma, 1e6);
+  config->Read("people.huber_sigmas", &bundle->huber_dynamic_sigmas, kMinSigma, 1e6);
   config->Read("people.rigidity_sigma_m", &bundle->rigidity_sigma_m, kMinSigma, 100);
   config->Read("people.segment_length_sigma_m", &bundle->segment_length_sigma_m, kMinSigma, 100);
   config->Read("people.motion_sigma_m", &bundle->motion_sigma_m, kMinSigma, 100);
@@ -53,15 +53,15 @@ void ReadPeople(ConfigReader* config, SlidingWindowOptions* window) {
   config->Read("people.person_acceleration_m_s2", &bundle->person_acceleration_m_s2, kMinSigma,
                1e4);
   config->Read("people.free_rotation_sigma_rad", &bundle->free_rotation_sigma_rad, kMinSigma, 100);
-  config->Read("people.eliminate_joint", &bundle->eliminate_joint, kMinSigma, 1e9);
-  config->Read("people.eliminate_rigidity", &bundle->eliminate_rigidity, kMinSigma, 1e9);
-  config->Read("people.eliminate_motion", &bundle->eliminate_motion, kMinSigma, 1e9);
+  config->Read("people.reject_joint_sigmas", &bundle->reject_joint_sigmas, kMinSigma, 1e9);
+  config->Read("people.reject_rigidity_sigmas", &bundle->reject_rigidity_sigmas, kMinSigma, 1e9);
+  config->Read("people.reject_motion_sigmas", &bundle->reject_motion_sigmas, kMinSigma, 1e9);
 }
 
 void ReadTrust(ConfigReader* config, TrustOptions* trust) {
   config->Read("trust.min_static_observations", &trust->min_static_observations, 0, 100000);
   config->Read("trust.min_motion_factors", &trust->min_motion_factors, 1, 1000000);
-  config->Read("trust.max_eliminated_share", &trust->max_eliminated_share, 0, 1);
+  config->Read("trust.max_rejected_share", &trust->max_rejected_share, 0, 1);
   config->Read("trust.max_relative_sigma", &trust->max_relative_sigma, 0, 1);
   config->Read("trust.max_shift_chi2", &trust->max_shift_chi2, 0, 1e12);
 }

@@ -181,15 +181,15 @@ TEST(FrontendOptions, TheFileHasEveryKeyAndTheDefaults) {
   EXPECT_EQ(a.extractor.max_features_per_cell, b.extractor.max_features_per_cell);
   EXPECT_EQ(a.stereo.min_depth_m, b.stereo.min_depth_m);
   EXPECT_EQ(a.stereo.min_disparity_px, b.stereo.min_disparity_px);
-  EXPECT_EQ(a.stereo.max_hamming, b.stereo.max_hamming);
+  EXPECT_EQ(a.stereo.max_hamming_bits, b.stereo.max_hamming_bits);
   EXPECT_EQ(a.stereo.max_row_error_px, b.stereo.max_row_error_px);
   EXPECT_EQ(a.stereo.min_correlation, b.stereo.min_correlation);
   EXPECT_EQ(a.map.max_landmarks, b.map.max_landmarks);
   EXPECT_EQ(a.map.max_frames_unconfirmed, b.map.max_frames_unconfirmed);
   EXPECT_EQ(a.map.min_found_ratio, b.map.min_found_ratio);
   EXPECT_EQ(a.wide_radius_px, b.wide_radius_px);
-  EXPECT_EQ(a.wide_max_hamming, b.wide_max_hamming);
-  EXPECT_EQ(a.narrow_max_hamming, b.narrow_max_hamming);
+  EXPECT_EQ(a.wide_max_hamming_bits, b.wide_max_hamming_bits);
+  EXPECT_EQ(a.narrow_max_hamming_bits, b.narrow_max_hamming_bits);
   EXPECT_EQ(a.min_inliers_tracking, b.min_inliers_tracking);
   EXPECT_EQ(a.min_inliers_weak, b.min_inliers_weak);
   EXPECT_EQ(a.min_correlation, b.min_correlation);
