@@ -23,9 +23,9 @@ struct LandmarkMatch {
 };
 
 struct ProjectionSearch {
-  double radius_px = 8;       ///< at level 0, grows with the level
-  int max_hamming_bits = 80;  ///< bits
-  double max_ratio = 0.9;     ///< best distance against second best
+  double radius_px = 8;  ///< at level 0, grows with the level
+  int max_hamming_bits = 80;
+  double max_ratio = 0.9;  ///< best distance against second best
 };
 
 /// A landmark that should be in view, and where.

@@ -41,7 +41,7 @@ struct BundleOptions {
   double motion_sigma_m = 0.04;
   double motion_max_gap_s = 0.5;          ///< no motion factor across a longer gap in a track
   double person_acceleration_m_s2 = 2.0;  ///< sigma of the change of velocity (kVelocity)
-  double person_speed_m_s = 0;            ///< sigma of a track's first velocity; 0: unknown
+  double person_speed_m_s = 1.0;          ///< sigma of a track's first velocity; 0: unknown
   double free_rotation_sigma_rad = 0.1;   ///< about a two-point part's own axis (kSe3Parts)
   double segment_length_sigma_m = 0.01;   ///< of a known length, beside what it is known by
 };
