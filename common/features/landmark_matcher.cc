@@ -145,7 +145,7 @@ std::vector<LandmarkMatch> MatchByProjection(const std::vector<VisibleLandmark>&
         second = distance;
       }
     }
-    if (best > search.max_hamming || best > search.max_ratio * second) continue;
+    if (best > search.max_hamming_bits || best > search.max_ratio * second) continue;
     const auto [it, is_new] =
         best_of_feature.try_emplace(best_feature, LandmarkMatch{candidate.id, best_feature, best});
     if (!is_new && best < it->second.distance) it->second = {candidate.id, best_feature, best};
@@ -159,7 +159,7 @@ std::vector<LandmarkMatch> MatchByProjection(const std::vector<VisibleLandmark>&
 
 std::vector<LandmarkMatch> MatchByDescriptor(
     const std::vector<std::pair<LandmarkId, const LocalLandmark*>>& landmarks,
-    const std::vector<Feature>& features, int max_hamming, double max_ratio) {
+    const std::vector<Feature>& features, int max_hamming_bits, double max_ratio) {
   if (landmarks.empty() || features.size() < 2) return {};
   std::vector<Descriptor> descriptors;  // contiguous: every landmark reads them all
   descriptors.reserve(features.size());
@@ -167,7 +167,7 @@ std::vector<LandmarkMatch> MatchByDescriptor(
   std::map<int, LandmarkMatch> best_of_feature;
   for (const auto& [id, landmark] : landmarks) {
     const NearestTwo nearest = FindNearestTwo(landmark->descriptor, descriptors);
-    if (nearest.best_distance > max_hamming) continue;
+    if (nearest.best_distance > max_hamming_bits) continue;
     const Eigen::Vector2d apart = features[static_cast<std::size_t>(nearest.best)].uv_px -
                                   features[static_cast<std::size_t>(nearest.second)].uv_px;
     const bool is_same_corner = apart.norm() < 3;  // on a neighbouring level: not a rival

@@ -24,8 +24,8 @@ struct LandmarkMatch {
 
 /// Limits for matching landmarks near their projections.
 struct ProjectionSearch {
-  double radius_px = 8;    ///< at level 0, grows with the level
-  int max_hamming = 80;    ///< bits
+  double radius_px = 8;  ///< at level 0, grows with the level
+  int max_hamming_bits = 80;
   double max_ratio = 0.9;  ///< best distance against second best
 };
 
@@ -55,7 +55,7 @@ std::vector<LandmarkMatch> MatchByProjection(const std::vector<VisibleLandmark>&
 /// cross-check).
 std::vector<LandmarkMatch> MatchByDescriptor(
     const std::vector<std::pair<LandmarkId, const LocalLandmark*>>& landmarks,
-    const std::vector<Feature>& features, int max_hamming, double max_ratio);
+    const std::vector<Feature>& features, int max_hamming_bits, double max_ratio);
 
 }  // namespace airdos
 

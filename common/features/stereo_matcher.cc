@@ -29,7 +29,7 @@ std::optional<double> FeatureStereoMatcher::Match(const Feature& left) const {
   const int row_begin = std::max(0, static_cast<int>(std::ceil(left.uv_px.y() - row_error_px)));
   const int row_end =
       std::min(static_cast<int>(rows_.size()) - 1, static_cast<int>(left.uv_px.y() + row_error_px));
-  int best_distance = options_.max_hamming + 1;
+  int best_distance = options_.max_hamming_bits + 1;
   const Feature* best = nullptr;
   for (int row = row_begin; row <= row_end; ++row) {
     for (const int index : rows_[static_cast<std::size_t>(row)]) {

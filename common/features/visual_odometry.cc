@@ -104,8 +104,8 @@ void VisualOdometry::UpdateMap(const View& view, const std::vector<LandmarkId>& 
 }
 
 VisualOdometry::Tracking VisualOdometry::Track(const View& view, const PosePrior& prior) const {
-  const ProjectionSearch wide{options_.wide_radius_px, options_.wide_max_hamming, 0.9};
-  const ProjectionSearch narrow{8, options_.narrow_max_hamming, 0.9};
+  const ProjectionSearch wide{options_.wide_radius_px, options_.wide_max_hamming_bits, 0.9};
+  const ProjectionSearch narrow{8, options_.narrow_max_hamming_bits, 0.9};
   Tracking best = Measure(view, TrackFrom(view, prior.T_W_C, wide, prior), prior);
   // With so many that agree no other pose has as many. A frame of few landmarks gets both tries.
   if (best.score >= options_.rich_observations) return best;
@@ -212,7 +212,7 @@ VisualOdometry::Hypothesis VisualOdometry::TrackFrom(const View& view, const Se3
       inliers.push_back(hypothesis.matches[i]);
     }
     hypothesis.matches = std::move(inliers);
-    if (pass < 2) search = {kNarrowRadii_px[pass], options_.narrow_max_hamming, 0.95};
+    if (pass < 2) search = {kNarrowRadii_px[pass], options_.narrow_max_hamming_bits, 0.95};
   }
   return hypothesis;
 }
@@ -231,7 +231,7 @@ std::optional<Se3> VisualOdometry::Relocate(const View& view) const {
     if (!(landmark.last_seen < oldest)) candidates.emplace_back(id, &landmark);
   }
   const std::vector<LandmarkMatch> matches =
-      MatchByDescriptor(candidates, view.left_features, options_.wide_max_hamming, 0.85);
+      MatchByDescriptor(candidates, view.left_features, options_.wide_max_hamming_bits, 0.85);
   std::vector<PoseObservation> observations;
   for (const LandmarkMatch& match : matches) {
     const Feature& feature = view.left_features[static_cast<std::size_t>(match.feature)];

@@ -31,9 +31,9 @@ struct VisualOdometryOptions {
   int rich_observations = 150;
   double rich_min_correlation = 0.95;
   LocalMapOptions map;
-  double wide_radius_px = 30;     ///< first search around the constant-velocity prediction
-  int wide_max_hamming = 64;      ///< bits
-  int narrow_max_hamming = 90;    ///< bits
+  double wide_radius_px = 30;  ///< first search around the constant-velocity prediction
+  int wide_max_hamming_bits = 64;
+  int narrow_max_hamming_bits = 90;
   int min_inliers_tracking = 20;  ///< fewer: STATE_WEAK
   int min_inliers_weak = 1;       ///< fewer: STATE_COASTING
   double min_correlation = 0.8;   ///< of a landmark's patch with the image

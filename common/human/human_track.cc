@@ -89,8 +89,10 @@ std::optional<double> HumanTrack::Cost(const PersonDetection& detection) const {
   const std::optional<double> distance_px = MedianDistance(detection.left);
   if (!distance_px) return std::nullopt;
   const double motion = *distance_px / height_px_;
-  if (motion > options_.max_motion + options_.max_motion_growth * num_missed_) return std::nullopt;
-  const double sigma = options_.motion_sigma + options_.motion_sigma_growth * num_missed_;
+  if (motion > options_.max_motion_per_height + options_.max_motion_growth_per_height * num_missed_)
+    return std::nullopt;
+  const double sigma =
+      options_.motion_sigma_per_height + options_.motion_sigma_growth_per_height * num_missed_;
   return std::pow(motion / sigma, 2) + LooksCost(detection);
 }
 

@@ -13,12 +13,12 @@ namespace airdos {
 
 /// How a person may move and change between frames.
 struct HumanTrackOptions {
-  double motion_sigma = 0.15;         ///< of the predicted joints, of the person's height
-  double motion_sigma_growth = 0.03;  ///< added for each frame without a detection
-  double max_motion = 0.6;            ///< beyond it, of the person's height, it is somebody else
-  double max_motion_growth = 0.05;    ///< added for each frame without a detection
-  double disparity_sigma_px = 0.8;    ///< of a person's median disparity
-  double depth_sigma = 0.1;           ///< relative change of depth from frame to frame
+  double motion_sigma_per_height = 0.15;         ///< of the predicted joints
+  double motion_sigma_growth_per_height = 0.03;  ///< added for each frame without a detection
+  double max_motion_per_height = 0.6;            ///< beyond it, it is somebody else
+  double max_motion_growth_per_height = 0.05;    ///< added for each frame without a detection
+  double disparity_sigma_px = 0.8;               ///< of a person's median disparity
+  double depth_sigma = 0.1;                      ///< relative change of depth from frame to frame
   double depth_sigma_growth = 0.04;
   double appearance_sigma = 0.3;  ///< of AppearanceDistance()
   double unknown_appearance_cost = 1;

@@ -118,15 +118,15 @@ std::vector<std::optional<int>> HumanTracker::FindTracks(
   std::vector<std::optional<int>> track_of(observations.size());
   std::vector<bool> is_taken(tracks_.size(), false);
   // People seen in both images come first: depth makes the association more certain.
-  Associate(observations, true, options_.gate, &is_taken, &track_of);
+  Associate(observations, true, options_.max_squared_sigmas, &is_taken, &track_of);
   if (options_.use_left_only) {
-    Associate(observations, false, options_.left_only_gate, &is_taken, &track_of);
+    Associate(observations, false, options_.left_only_max_squared_sigmas, &is_taken, &track_of);
   }
   return track_of;
 }
 
 void HumanTracker::Associate(const std::vector<Observation>& observations, bool is_stereo,
-                             double gate, std::vector<bool>* is_track_taken,
+                             double max_squared_sigmas, std::vector<bool>* is_track_taken,
                              std::vector<std::optional<int>>* track_of) const {
   std::vector<std::size_t> rows, columns;
   for (std::size_t i = 0; i < observations.size(); ++i) {
@@ -144,7 +144,7 @@ void HumanTracker::Associate(const std::vector<Observation>& observations, bool 
               .value_or(std::numeric_limits<double>::infinity());
     }
   }
-  const std::vector<std::optional<int>> partner = Assign(cost, gate);
+  const std::vector<std::optional<int>> partner = Assign(cost, max_squared_sigmas);
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (!partner[r]) continue;
     const std::size_t track = columns[static_cast<std::size_t>(*partner[r])];
@@ -175,12 +175,12 @@ SideSwap HumanTracker::FindSwap(const Observation& observation, const HumanTrack
   const BodyKeypoints& left = observation.detection.left;
   if (observation.right_swap != SideSwap::kNone) {
     const bool is_left_wrong =
-        track.HasSwap(left, observation.right_swap, options_.min_swap_gain_doubtful);
+        track.HasSwap(left, observation.right_swap, options_.min_doubtful_swap_gain_squared_sigmas);
     return is_left_wrong ? observation.right_swap : SideSwap::kNone;
   }
   if (observation.right) return SideSwap::kNone;
   for (const SideSwap swap : kSideSwaps) {
-    if (track.HasSwap(left, swap, options_.min_swap_gain)) return swap;
+    if (track.HasSwap(left, swap, options_.min_swap_gain_squared_sigmas)) return swap;
   }
   return SideSwap::kNone;
 }

@@ -16,17 +16,21 @@ namespace airdos {
 
 /// Settings of the HumanTracker.
 struct HumanTrackerOptions {
-  double gate = 12;            ///< sum of squared errors, in sigmas, up to which it is one person
-  double left_only_gate = 6;   ///< the same where there is no disparity to compare
+  /// Sum of squared errors up to which it is one person; the same where there is no disparity to
+  /// compare.
+  double max_squared_sigmas = 12;
+  double left_only_max_squared_sigmas = 6;
   int max_missed_frames = 10;  ///< after as many frames without a detection a track ends
   int min_seen_to_report = 1;  ///< detections of a person before it is reported
   int min_joints = 4;          ///< with fewer joints a person is not reported
   bool use_left_only = true;   ///< report people whom only the left detections have
   int max_carried_frames = 1;  ///< report people by optical flow for as many missed frames
   double carried_sigma_factor = 1.5;
-  double min_swap_gain = 20;  ///< squared errors, in sigmas, that exchanging sides must save
-  double min_swap_gain_doubtful = 3;  ///< the same where left and right detection disagree on sides
-  bool use_shift_vote = true;         ///< let the people tell how far the camera turned
+  /// Squared errors that exchanging sides must save; the same where left and right detection
+  /// disagree on sides.
+  double min_swap_gain_squared_sigmas = 20;
+  double min_doubtful_swap_gain_squared_sigmas = 3;
+  bool use_shift_vote = true;  ///< let the people tell how far the camera turned
   StereoMatcherOptions matcher;
   JointTriangulatorOptions triangulator;
   ImageFlowOptions flow;
@@ -72,8 +76,9 @@ class HumanTracker {
                                    const StereoMatching& matching) const;
   // For each observation, the track that it belongs to.
   std::vector<std::optional<int>> FindTracks(const std::vector<Observation>& observations) const;
-  void Associate(const std::vector<Observation>& observations, bool is_stereo, double gate,
-                 std::vector<bool>* is_track_taken, std::vector<std::optional<int>>* tracks) const;
+  void Associate(const std::vector<Observation>& observations, bool is_stereo,
+                 double max_squared_sigmas, std::vector<bool>* is_track_taken,
+                 std::vector<std::optional<int>>* tracks) const;
   SideSwap FindSwap(const Observation& observation, const HumanTrack& track) const;
   std::optional<TrackedHuman> Update(const StereoCamera& camera, const StereoImages& images,
                                      Observation observation, HumanTrack* track) const;

@@ -96,11 +96,12 @@ std::optional<TriangulatedJoint> TriangulateJoint(const JointTriangulatorOptions
   const double sigma_l = options.noise.Sigma(l.confidence, height_px);
   const double sigma_r = options.noise.Sigma(r.confidence, height_px);
   const double sigma_difference = std::hypot(sigma_l, sigma_r);
-  if (std::abs(l.v_px - r.v_px) > options.max_row_error * sigma_difference) return std::nullopt;
+  if (std::abs(l.v_px - r.v_px) > options.max_row_error_sigmas * sigma_difference)
+    return std::nullopt;
   const double disparity_px = l.u_px - r.u_px;
   const double extent_px = ExtentPx(options, camera, person_px);
   if (std::abs(disparity_px - person_px) >
-      options.max_extent_error * std::hypot(sigma_difference, extent_px)) {
+      options.max_extent_error_sigmas * std::hypot(sigma_difference, extent_px)) {
     return std::nullopt;
   }
   const Fused row = Fuse(l.v_px, sigma_l, r.v_px, sigma_r);

@@ -91,7 +91,7 @@ std::optional<StereoPair> FitWithSides(const StereoMatcherOptions& options,
     const double error =
         std::pow(joint.row_difference_px, 2) / variance +
         std::pow(joint.disparity_px - disparity_px, 2) / (variance + extent_px * extent_px);
-    sum += std::min(error, options.max_joint_cost);
+    sum += std::min(error, options.max_joint_squared_sigmas);
   }
   StereoPair pair;
   pair.disparity_px = disparity_px;
@@ -135,7 +135,7 @@ StereoMatching MatchStereo(const StereoMatcherOptions& options, const StereoCame
   }
   StereoMatching matching;
   std::vector<bool> is_right_paired(right.size(), false);
-  const std::vector<std::optional<int>> partner = Assign(cost, options.gate);
+  const std::vector<std::optional<int>> partner = Assign(cost, options.max_mean_squared_sigmas);
   for (std::size_t l = 0; l < left.size(); ++l) {
     if (!partner[l]) {
       matching.unpaired_left.push_back(static_cast<int>(l));

@@ -15,8 +15,10 @@ struct StereoMatcherOptions {
   double min_depth_m = 0.5;
   double max_depth_m = 40;
   double body_extent_m = 0.2;  ///< standard deviation of the depth of a person's joints
-  double max_joint_cost = 8;   ///< a joint that fits worse counts as an outlier and no more
-  double gate = 3.5;           ///< mean squared error per measurement of a pair, in sigmas
+  /// A joint that fits worse counts as an outlier and no more.
+  double max_joint_squared_sigmas = 8;
+  /// Of a pair, per measurement; above it two detections are not one person.
+  double max_mean_squared_sigmas = 3.5;
   KeypointNoise noise;
 };
 
@@ -39,7 +41,8 @@ struct StereoMatching {
 /// both see, with d_j = u_left - u_right, the median disparity d and the joint's variance s_j^2 of
 /// both images together:
 ///   e_j = (v_left - v_right)^2 / s_j^2 + (d_j - d)^2 / (s_j^2 + extent(d)^2),
-///   cost = mean(min(e_j, max_joint_cost)) / 2 + size term + a little for exchanged sides,
+///   cost = mean(min(e_j, max_joint_squared_sigmas)) / 2 + size term + a little for exchanged
+///   sides,
 /// and the size term compares the limbs' lengths in the image with what kSegments lets expect at
 /// that depth. All exchanges of sides are tried; the best is returned.
 std::optional<StereoPair> FitStereoPair(const StereoMatcherOptions& options,
@@ -47,7 +50,7 @@ std::optional<StereoPair> FitStereoPair(const StereoMatcherOptions& options,
                                         const BodyKeypoints& right);
 
 /// Pairs the people of a rectified pair of images, who come in no order and partly in one image
-/// only, so that the sum of costs is least; pairs above the gate are not made.
+/// only, so that the sum of costs is least; pairs above max_mean_squared_sigmas are not made.
 StereoMatching MatchStereo(const StereoMatcherOptions& options, const StereoCamera& camera,
                            const std::vector<BodyKeypoints>& left,
                            const std::vector<BodyKeypoints>& right);

@@ -86,7 +86,7 @@ FrontendNode::FrontendNode(const FrontendOptions& options)
   if (options_.use_masks) Join<person_mask_t>(channel::kPersonMask, &FrontendInputs::mask);
   JoinCalibration();
   DeclareOutput(channel::kStaticFeatures);
-  if (options_.feedback_lag > 0) {
+  if (options_.feedback_lag_frames > 0) {
     Subscribe<map_update_t>(channel::kMapUpdate, [this](map_update_t&& message) {
       return ReceiveUpdate(std::move(message));
     });
@@ -101,7 +101,7 @@ std::string FrontendNode::ReceiveUpdate(map_update_t&& message) {
   // The optimizer has given up a frame that is yet to be published, so whatever that frame waits
   // for was lost. Only for the next few frames: a single wrong number must not end the waiting.
   const std::int64_t ahead = published_.empty() ? 0 : seq - published_.back();
-  if (ahead > 0 && ahead <= options_.feedback_lag) is_feedback_silent_ = true;
+  if (ahead > 0 && ahead <= options_.feedback_lag_frames) is_feedback_silent_ = true;
   if (!is_expected) return "too late, or for a frame that was not published";
   UpdateParts& parts = updates_[seq];
   const int part = message.part;
@@ -114,8 +114,8 @@ std::string FrontendNode::ReceiveUpdate(map_update_t&& message) {
 }
 
 std::optional<std::int64_t> FrontendNode::RequiredUpdate() const {
-  const auto lag = static_cast<std::size_t>(options_.feedback_lag);
-  if (options_.feedback_lag == 0 || published_.size() < lag) return std::nullopt;
+  const auto lag = static_cast<std::size_t>(options_.feedback_lag_frames);
+  if (options_.feedback_lag_frames == 0 || published_.size() < lag) return std::nullopt;
   return published_[published_.size() - lag];
 }
 
@@ -283,61 +283,9 @@ void FrontendNode::ProcessFrame(const Header& header, FrontendInputs inputs) {
   for (const std::string& warning : watches_.input.TakeWarnings()) Warn(warning);
   Publish(channel::kStaticFeatures, message);
   published_.push_back(header.seq);
-  if (published_.size() > static_cast<std::size_t>(std::max(options_.feedback_lag, 1))) {
+  if (published_.size() > static_cast<std::size_t>(std::max(options_.feedback_lag_frames, 1))) {
     published_.erase(published_.begin());
   }
-}
-
-FrontendOptions ReadFrontendOptions(ConfigReader* config) {
-  FrontendOptions options;
-  VisualOdometryOptions& odometry = options.odometry;
-  config->Read("masks.use", &options.use_masks);
-  config->Read("masks.dilation_px", &options.mask_dilation_px, 0, 100);
-  config->Read("feedback.lag_frames", &options.feedback_lag, 0, 20);
-  config->Read("features.num_levels", &odometry.extractor.num_levels, 1, 12);
-  config->Read("features.fast_threshold", &odometry.extractor.fast_threshold, 1, 100);
-  config->Read("features.cell_size_px", &odometry.extractor.cell_size_px, 8, 256);
-  config->Read("features.max_per_cell", &odometry.extractor.max_features_per_cell, 1, 100);
-  config->Read("stereo.min_depth_m", &odometry.stereo.min_depth_m, 0.05, 100);
-  config->Read("stereo.min_disparity_px", &odometry.stereo.min_disparity_px, 0.01, 50);
-  config->Read("stereo.max_row_error_px", &odometry.stereo.max_row_error_px, 0.5, 10);
-  config->Read("stereo.max_hamming_bits", &odometry.stereo.max_hamming, 1, 256);
-  config->Read("stereo.min_correlation", &odometry.stereo.min_correlation, 0, 1);
-  config->Read("stereo.rich_observations", &odometry.rich_observations, 1, 100000);
-  config->Read("stereo.rich_min_correlation", &odometry.rich_min_correlation, 0, 1);
-  config->Read("map.max_landmarks", &odometry.map.max_landmarks, 100, 100000);
-  config->Read("map.max_frames_unconfirmed", &odometry.map.max_frames_unconfirmed, 1, 1000);
-  config->Read("map.min_found_ratio", &odometry.map.min_found_ratio, 0, 1);
-  config->Read("tracking.wide_radius_px", &odometry.wide_radius_px, 1, 500);
-  config->Read("tracking.wide_max_hamming_bits", &odometry.wide_max_hamming, 1, 256);
-  config->Read("tracking.narrow_max_hamming_bits", &odometry.narrow_max_hamming, 1, 256);
-  config->Read("tracking.min_inliers_tracking", &odometry.min_inliers_tracking, 3, 1000);
-  config->Read("tracking.min_inliers_weak", &odometry.min_inliers_weak, 1, 1000);
-  config->Read("tracking.min_correlation", &odometry.min_correlation, 0, 1);
-  config->Read("tracking.aligned_sigma_px", &odometry.aligned_sigma_px, 0.01, 10);
-  config->Read("tracking.corner_sigma_px", &odometry.corner_sigma_px, 0.01, 10);
-  config->Read("tracking.max_observations", &odometry.max_observations, 3, 5000);
-  config->Read("tracking.observation_cell_px", &odometry.observation_cell_px, 4, 256);
-  config->Read("motion.linear_start_m_s2", &odometry.motion.linear_start_m_s2, 1e-3, 1000);
-  config->Read("motion.angular_start_rad_s2", &odometry.motion.angular_start_rad_s2, 1e-3, 1000);
-  config->Read("motion.linear_floor_m_s2", &odometry.motion.linear_floor_m_s2, 1e-3, 1000);
-  config->Read("motion.linear_ceiling_m_s2", &odometry.motion.linear_ceiling_m_s2, 1e-3, 1000);
-  config->Read("motion.angular_floor_rad_s2", &odometry.motion.angular_floor_rad_s2, 1e-3, 1000);
-  config->Read("motion.angular_ceiling_rad_s2", &odometry.motion.angular_ceiling_rad_s2, 1e-3,
-               1000);
-  config->Read("motion.initial_speed_m_s", &odometry.motion.initial_speed_m_s, 1e-3, 1000);
-  config->Read("motion.initial_turn_rad_s", &odometry.motion.initial_turn_rad_s, 1e-3, 1000);
-  config->Read("motion.memory_s", &odometry.motion.memory_s, 0.01, 1e6);
-  config->Read("people.use", &options.use_people);
-  config->Read("people.min_keypoint_confidence", &options.min_keypoint_confidence, 0, 1);
-  config->Read("people.max_static", &odometry.max_static_for_people, 0, 10000);
-  config->Read("people.acceleration_m_s2", &odometry.people.acceleration_m_s2, 1e-3, 100);
-  config->Read("people.initial_speed_m_s", &odometry.people.initial_speed_m_s, 1e-3, 100);
-  config->Read("people.wobble_m", &odometry.people.wobble_m, 1e-4, 10);
-  config->Read("people.max_joint_sigmas", &odometry.people.max_joint_sigmas, 0.1, 100);
-  config->Read("people.max_missed_frames", &odometry.people.max_missed_frames, 0, 1000);
-  config->Read("people.min_seen_frames", &odometry.people.min_seen_frames, 1, 1000);
-  return options;
 }
 
 std::unique_ptr<Node> MakeFrontendNode(ConfigReader* config) {

@@ -17,26 +17,12 @@
 #include "airdos/static_features_t.hpp"
 #include "common/config/config_reader.h"
 #include "common/features/visual_odometry.h"
+#include "processes/frontend/frontend_options.h"
 #include "processes/frontend/input_watch.h"
 #include "processes/node/frame_node.h"
 #include "processes/node/partner_watch.h"
 
 namespace airdos {
-
-/// Settings of the FrontendNode.
-struct FrontendOptions {
-  VisualOdometryOptions odometry;
-  bool use_masks = true;
-  bool use_people = true;                ///< in the pose of a frame that sees little else
-  double min_keypoint_confidence = 0.1;  ///< of joints that mark where people are without a mask
-  int mask_dilation_px =
-      8;  ///< masks are ragged: a border of so many px around people is left out as well
-  /// MAP_UPDATE of the frame so many frames back must be there before a frame starts; 0 = no
-  /// feedback.
-  int feedback_lag = 2;
-};
-
-FrontendOptions ReadFrontendOptions(ConfigReader* config);
 
 /// The messages of one frame.
 struct FrontendInputs {
@@ -92,7 +78,7 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   Watches watches_;
   std::optional<std::int64_t> session_;
   std::vector<std::int64_t>
-      published_;  // image numbers of the last feedback_lag frames, oldest first
+      published_;  // image numbers of the last feedback_lag_frames frames, oldest first
   using UpdateParts = std::map<int, map_update_t>;
   std::map<std::int64_t, UpdateParts> updates_;  // of this session, keyed by seq
   std::int64_t newest_update_ = -1;              // complete

@@ -9,6 +9,7 @@
 #include "airdos/person_keypoints_t.hpp"
 #include "common/config/config_reader.h"
 #include "common/human/human_tracker.h"
+#include "processes/human_tracker/human_tracker_options.h"
 #include "processes/human_tracker/people_watch.h"
 #include "processes/node/frame_node.h"
 #include "processes/node/partner_watch.h"
@@ -51,8 +52,6 @@ class HumanTrackerNode : public FrameNode<HumanTrackerInputs> {
   Watches watches_;
 };
 
-/// Reads the options of launch_scripts/config/human_tracker.yaml; Finish() is left to the caller.
-HumanTrackerOptions ReadHumanTrackerOptions(ConfigReader* config);
 std::unique_ptr<Node> MakeHumanTrackerNode(ConfigReader* config);
 
 }  // namespace airdos

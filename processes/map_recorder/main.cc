@@ -7,7 +7,7 @@
 int main(int argc, char** argv) {
   airdos::ProcessInfo info;
   info.program = "airdos-map-recorder";
-  info.config_name = "map_recorder";
+  info.options = airdos::PagesOf<airdos::MapRecorderOptions>();
   info.description = "Records trajectory, people and map into a crash-safe file";
   std::string run_dir;
   const airdos::CommonArguments* common = nullptr;

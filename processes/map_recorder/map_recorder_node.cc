@@ -352,14 +352,6 @@ void MapRecorderNode::CompareWithRecorded(const FourDMap& map, const MapFileSumm
                    "; did something else write into it? Record again");
 }
 
-MapRecorderOptions ReadMapRecorderOptions(ConfigReader* config) {
-  MapRecorderOptions options;
-  config->Read("output.directory", &options.directory);
-  config->Read("output.chunk_frames", &options.chunk_frames, 1, 1000);
-  config->Read("output.export_at_end", &options.export_at_end);
-  return options;
-}
-
 std::unique_ptr<Node> MakeMapRecorderNode(ConfigReader* config) {
   return std::make_unique<MapRecorderNode>(ReadMapRecorderOptions(config));
 }

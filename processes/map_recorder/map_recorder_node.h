@@ -15,17 +15,10 @@
 #include "common/config/config_reader.h"
 #include "common/map/four_d_map.h"
 #include "common/util/output_folder.h"
+#include "processes/map_recorder/map_recorder_options.h"
 #include "processes/node/frame_node.h"
 
 namespace airdos {
-
-/// Settings of the MapRecorderNode.
-struct MapRecorderOptions {
-  std::string directory;      ///< made if it is not there; must be named
-  int chunk_frames = 10;      ///< frames a chunk; a kill loses at most one chunk
-  bool export_at_end = true;  ///< also write the exports of common/map/map_export.h
-  OutputRules rules;          ///< what may be replaced; not in the configuration
-};
 
 /// STATE_ESTIMATE and MAP_UPDATE of one frame.
 struct MapRecorderInputs {
@@ -145,8 +138,6 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   std::set<std::int64_t> not_noted_;      // ground truth that is not yet in notes_
 };
 
-/// Reads launch_scripts/config/map_recorder.yaml's keys; the caller calls Finish() of the reader.
-MapRecorderOptions ReadMapRecorderOptions(ConfigReader* config);
 std::unique_ptr<Node> MakeMapRecorderNode(ConfigReader* config);
 
 }  // namespace airdos

@@ -108,7 +108,7 @@ void Scaling(benchmark::State& state, int num_people, int window, BundleSolver s
   if (is_warm) {
     BundleOptions until_converged = options;
     until_converged.max_iterations = 50;
-    until_converged.max_iterations_after_elimination = 0;
+    until_converged.max_iterations_after_rejection = 0;
     start = SlideWindow(until_converged, street);
   }
   std::vector<double> memory;

@@ -21,8 +21,8 @@ Se3 Pose(double x) { return {ExpSo3({0.1, -0.2, 0.3}), {x, -0.5 * x, 0.25 * x}};
 BundleOptions Options() {
   BundleOptions options;
   options.max_iterations = 1;
-  options.max_iterations_after_elimination = 0;
-  options.huber_static = options.huber_dynamic = kNone;
+  options.max_iterations_after_rejection = 0;
+  options.huber_static_sigmas = options.huber_dynamic_sigmas = kNone;
   return options;
 }
 
@@ -52,8 +52,8 @@ TEST(BundleCosts, ALandmark) {
   BundleProblem problem = OneLandmark();
   BundleOptions options = Options();
   EXPECT_NEAR(CostOf(options, problem), 28, 1e-9);  // (36 + 16 + 4) / 2
-  options.huber_static = 2;
-  options.huber_dynamic = 0.1;
+  options.huber_static_sigmas = 2;
+  options.huber_dynamic_sigmas = 0.1;
   EXPECT_NEAR(CostOf(options, problem), Huber(56, 2), 1e-9);
   problem.observations[0].has_right = false;
   EXPECT_NEAR(CostOf(Options(), problem), 26, 1e-9);
@@ -120,8 +120,8 @@ TEST(BundleCosts, AJointWithItsWholeCovariance) {
   const double squared = error.dot(joint.covariance_px2.inverse() * error);
   EXPECT_NEAR(CostOf(Options(), problem), 0.5 * squared, 1e-9);
   BundleOptions options = Options();
-  options.huber_static = 0.1;
-  options.huber_dynamic = 1;
+  options.huber_static_sigmas = 0.1;
+  options.huber_dynamic_sigmas = 1;
   EXPECT_NEAR(CostOf(options, problem), Huber(squared, 1), 1e-9);
   joint.is_eliminated = true;
   EXPECT_NEAR(CostOf(options, problem), 0, 1e-12);
@@ -149,8 +149,8 @@ TEST(BundleCosts, ASegmentAndWhatIsKnownOfIt) {
   human.known_length_m[9] = 0.50;
   human.known_length_sigma_m[9] = 0.03;
   EXPECT_NEAR(CostOf(options, problem), 2 + 0.18, 1e-9);  // 0.03 / 0.05
-  options.huber_dynamic = 0.5;                            // not on what is known
-  options.huber_smoothness = 0.1;
+  options.huber_dynamic_sigmas = 0.5;                     // not on what is known
+  options.huber_smoothness_sigmas = 0.1;
   EXPECT_NEAR(CostOf(options, problem), Huber(4, 0.5) + 0.18, 1e-9);
   BundleProblem copy = problem;
   const BundleSummary summary = SolveBundle(options, &copy);
@@ -196,8 +196,8 @@ TEST(BundleCosts, AVelocityAFramePair) {
   BundleOptions options = WalkerOptions();
   EXPECT_NEAR(CostOf(options, problem), kMotionSquared + 0.5 * (kSpeedSquared + kChangeSquared),
               1e-9);
-  options.huber_dynamic = 1;
-  options.huber_smoothness = 0.5;
+  options.huber_dynamic_sigmas = 1;
+  options.huber_smoothness_sigmas = 0.5;
   EXPECT_NEAR(CostOf(options, problem),
               2 * Huber(kMotionSquared, 1) + Huber(kSpeedSquared, 0.5) + Huber(kChangeSquared, 0.5),
               1e-9);
@@ -335,8 +335,8 @@ TEST(BundleCosts, AMotionAPartChangesLittle) {
   options.motion_form = MotionForm::kSe3Smooth;
   // (1.5, 0.5) - (1.2, 0) m/s over 0.15 s: 0.34 / 0.09.
   EXPECT_NEAR(CostOf(options, problem), 0.5 * 0.34 / 0.09, 1e-9);
-  options.huber_smoothness = 0.5;
-  options.huber_dynamic = 0.1;
+  options.huber_smoothness_sigmas = 0.5;
+  options.huber_dynamic_sigmas = 0.1;
   EXPECT_NEAR(CostOf(options, problem), Huber(0.34 / 0.09, 0.5), 1e-9);
   problem.humans[0].motion_noise = MotionNoise{0.04, 4, 1};
   EXPECT_NEAR(CostOf(options, problem), Huber(0.34 / 0.36, 0.5), 1e-9);

@@ -18,11 +18,11 @@ constexpr double kExact = 1e-6;
 BundleOptions Options() {
   BundleOptions options;
   options.max_iterations = 60;
-  options.max_iterations_after_elimination = 60;
+  options.max_iterations_after_rejection = 60;
   options.function_tolerance = 1e-14;
-  options.huber_static = options.huber_dynamic = kNone;
-  options.eliminate_static = options.eliminate_joint = kNone;
-  options.eliminate_rigidity = options.eliminate_motion = kNone;
+  options.huber_static_sigmas = options.huber_dynamic_sigmas = kNone;
+  options.reject_static_sigmas = options.reject_joint_sigmas = kNone;
+  options.reject_rigidity_sigmas = options.reject_motion_sigmas = kNone;
   options.rigidity_sigma_m = 0.02;
   options.motion_sigma_m = 0.05;
   return options;
@@ -80,7 +80,7 @@ BundleProblem WrongLandmark(double sigmas) {
 
 TEST(BundleElimination, ALandmark) {
   BundleOptions options = Options();
-  options.eliminate_static = 4;
+  options.reject_static_sigmas = 4;
   BundleProblem problem = WrongLandmark(3.99);
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
   EXPECT_FALSE(problem.observations[1].is_eliminated);
@@ -90,7 +90,7 @@ TEST(BundleElimination, ALandmark) {
   EXPECT_TRUE(problem.observations[1].is_eliminated);
   problem = WrongLandmark(4.01);
   options = Options();
-  options.eliminate_joint = options.eliminate_rigidity = options.eliminate_motion = 4;
+  options.reject_joint_sigmas = options.reject_rigidity_sigmas = options.reject_motion_sigmas = 4;
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
 }
 
@@ -108,7 +108,7 @@ BundleProblem WrongJoint(double sigmas) {
 TEST(BundleElimination, AJoint) {
   BundleOptions options = Options();
   options.rigidity_sigma_m = options.segment_length_sigma_m = kExact;
-  options.eliminate_joint = 4;
+  options.reject_joint_sigmas = 4;
   BundleProblem problem = WrongJoint(3.99);
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
   problem = WrongJoint(4.01);
@@ -116,8 +116,8 @@ TEST(BundleElimination, AJoint) {
   EXPECT_FALSE(problem.humans[0].joints[0].is_eliminated);
   EXPECT_TRUE(problem.humans[0].joints[1].is_eliminated);
   EXPECT_EQ(problem.humans[0].num_rigidity_eliminated, 0);
-  options.eliminate_joint = kNone;
-  options.eliminate_static = options.eliminate_rigidity = options.eliminate_motion = 4;
+  options.reject_joint_sigmas = kNone;
+  options.reject_static_sigmas = options.reject_rigidity_sigmas = options.reject_motion_sigmas = 4;
   problem = WrongJoint(4.01);
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
 }
@@ -138,7 +138,7 @@ BundleProblem WrongLength(double sigmas) {
 TEST(BundleElimination, ALength) {
   BundleOptions options = Options();
   options.segment_length_sigma_m = kExact;
-  options.eliminate_rigidity = 4;
+  options.reject_rigidity_sigmas = 4;
   BundleProblem problem = WrongLength(3.99);
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
   problem = WrongLength(4.01);
@@ -149,8 +149,8 @@ TEST(BundleElimination, ALength) {
   // Counted anew each time.
   SolveBundle(options, &problem);
   EXPECT_EQ(problem.humans[1].num_rigidity_eliminated, 1);
-  options.eliminate_rigidity = kNone;
-  options.eliminate_static = options.eliminate_joint = options.eliminate_motion = 4;
+  options.reject_rigidity_sigmas = kNone;
+  options.reject_static_sigmas = options.reject_joint_sigmas = options.reject_motion_sigmas = 4;
   problem = WrongLength(4.01);
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
 }
@@ -170,7 +170,7 @@ BundleProblem WrongStep(double sigmas, double joint_sigma_m = kExact) {
 
 TEST(BundleElimination, AMotion) {
   BundleOptions options = Options();
-  options.eliminate_motion = 4;
+  options.reject_motion_sigmas = 4;
   BundleProblem problem = WrongStep(3.99);
   BundleSummary summary = SolveBundle(options, &problem);
   EXPECT_EQ(CountsOf(summary), kNobody);
@@ -185,7 +185,7 @@ TEST(BundleElimination, AMotion) {
   EXPECT_NEAR(summary.initial_cost, 0.5 * (4.01 * 4.01 + 3 * std::pow(4.01 / 3, 2)), 1e-6);
   EXPECT_NEAR(summary.final_cost, 0, 1e-6);
   problem = WrongStep(4.01);
-  options.max_iterations_after_elimination = 0;
+  options.max_iterations_after_rejection = 0;
   const BundleSummary first_pass = SolveBundle(options, &problem);
   EXPECT_EQ(CountsOf(first_pass), kNobody) << "no second pass";
   const auto num_iterations = [&options] {
@@ -194,22 +194,22 @@ TEST(BundleElimination, AMotion) {
       joint.p_W.z() += joint.joint;
     return SolveBundle(options, &from_afar).num_iterations;
   };
-  options.eliminate_motion = 2;  // the anchors are weaker here
+  options.reject_motion_sigmas = 2;  // the anchors are weaker here
   const int num_of_first = num_iterations();
   ASSERT_GT(num_of_first, 2);  // more than the second pass is given
-  options.max_iterations_after_elimination = 1;
+  options.max_iterations_after_rejection = 1;
   EXPECT_GT(num_iterations(), num_of_first) << "both passes count";
-  options.eliminate_motion = 4;
+  options.reject_motion_sigmas = 4;
   options = Options();
-  options.eliminate_static = options.eliminate_joint = options.eliminate_rigidity = 4;
+  options.reject_static_sigmas = options.reject_joint_sigmas = options.reject_rigidity_sigmas = 4;
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
 }
 
 TEST(BundleElimination, TheKernelKeepsOneWildJointFromCarryingTheRest) {
   BundleOptions options = Options();
-  options.max_iterations_after_elimination = 0;
+  options.max_iterations_after_rejection = 0;
   BundleProblem problem = WrongStep(30);  // 2 m
-  options.huber_dynamic = 2;
+  options.huber_dynamic_sigmas = 2;
   SolveBundle(options, &problem);
   // Three pull with v / sigma each, the fourth with two sigmas at most: v = 2 / 3 sigma.
   EXPECT_NEAR(problem.humans[0].motions[0].motion_W.translation.x(), 0.05 * 2 / 3, 1e-4);

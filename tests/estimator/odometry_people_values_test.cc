@@ -172,7 +172,7 @@ TEST(OdometryPeopleValues, PeopleMoveAlongWithTheWorld) {
 TEST(OdometryPeopleValues, AChanceAgreementOfAFewMovesNothing) {
   VisualOdometryOptions options;
   options.min_correlation = 0.3;
-  options.wide_max_hamming = options.narrow_max_hamming = 256;
+  options.wide_max_hamming_bits = options.narrow_max_hamming_bits = 256;
   VisualOdometry odometry(options);
   for (int k = 0; k < 8; ++k) odometry.Process(kCamera, Frame(k, false, false));
   Se3 before = Truth(7);

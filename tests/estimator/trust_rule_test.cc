@@ -13,7 +13,7 @@ TrustOptions Exact() {
   TrustOptions options;
   options.min_static_observations = 15;
   options.min_motion_factors = 20;
-  options.max_eliminated_share = 0.25;
+  options.max_rejected_share = 0.25;
   options.max_relative_sigma = 0.5;
   options.max_shift_chi2 = 16;
   return options;

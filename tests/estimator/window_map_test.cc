@@ -310,9 +310,9 @@ TEST(WindowMap, WithoutAKeyFrameTheOldestOfTheWindowIsHeld) {
 }
 
 /// Frames 0 to num_frames - 1 that all see landmarks 1 to 3.
-WindowMap Watched(int num_frames, int max_eliminations) {
+WindowMap Watched(int num_frames, int max_rejections) {
   WindowMapOptions options;
-  options.max_eliminations = max_eliminations;
+  options.max_rejections = max_rejections;
   WindowMap map(options);
   for (std::int64_t id = 0; id < num_frames; ++id) {
     map.AddFrame(kCamera, Frame(id, {1, 2, 3}), Pose(static_cast<double>(id)));
@@ -378,7 +378,7 @@ TEST(WindowMap, ALandmarkGoesWhenAsManyOfItsObservationsWereWrongAsRight) {
 
 TEST(WindowMap, ARemovedLandmarkIsNotListenedToForFiftyFrames) {
   WindowMapOptions options;
-  options.max_eliminations = 1;
+  options.max_rejections = 1;
   WindowMap map(options);
   for (std::int64_t id = 0; id < 4; ++id) map.AddFrame(kCamera, Frame(id, {1, 2, 3}), Se3());
   ThrowOut({1, 3}, &map);  // the newest was frame 3

@@ -173,7 +173,7 @@ double PositionError_m(const static_features_t& message, const Se3& T_O_C) {
 
 FrontendOptions WithoutFeedback() {
   FrontendOptions options;
-  options.feedback_lag = 0;
+  options.feedback_lag_frames = 0;
   return options;
 }
 

@@ -23,7 +23,7 @@ constexpr int kMaskBegin_px = 250, kMaskEnd_px = 280;
 
 FrontendOptions Options() {
   FrontendOptions options;
-  options.feedback_lag = 2;
+  options.feedback_lag_frames = 2;
   options.mask_dilation_px = 5;
   options.odometry.max_static_for_people = 10000;  // people always have a say
   options.odometry.people.wobble_m = 0.01;

@@ -155,7 +155,7 @@ TEST(HumanTrackerNode, OneMessageAFrameWhateverIsMissing) {
 
 TEST(HumanTrackerNode, ConfigurationIsStrict) {
   ConfigReader config = ConfigReader::FromFile(kConfigFile);
-  config.Override("pairing.gate=-1");
+  config.Override("pairing.max_mean_squared_sigmas=-1");
   EXPECT_THROW(MakeHumanTrackerNode(&config), InputError);
 }
 

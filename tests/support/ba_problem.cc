@@ -143,9 +143,9 @@ class Reader {
     BundleOptions& options = result_.options;
     options.compute_covariance = false;
     options.max_iterations = 200;
-    options.max_iterations_after_elimination = 0;
+    options.max_iterations_after_rejection = 0;
     options.function_tolerance = 1e-6;
-    options.huber_static = options.huber_dynamic = 1e9;
+    options.huber_static_sigmas = options.huber_dynamic_sigmas = 1e9;
     options.motion_max_gap_s = std::numeric_limits<double>::infinity();
   }
 

@@ -7,6 +7,7 @@
 #include "airdos/image_t.hpp"
 #include "airdos/pose_t.hpp"
 #include "common/config/config_reader.h"
+#include "common/config/option_table.h"
 #include "processes/node/frame_node.h"
 
 namespace airdos {
@@ -48,10 +49,20 @@ class EchoNode : public FrameNode<EchoInputs> {
   double scale_;
 };
 
-inline std::unique_ptr<Node> MakeEchoNode(ConfigReader* config) {
+struct EchoOptions {
   double scale = 1;
-  config->Read("echo.scale", &scale, 0, 10);
-  return std::make_unique<EchoNode>(scale);
+};
+
+inline OptionTable TableOf(EchoOptions* options) {
+  OptionTable table("echo", "airdos-echo: for tests.");
+  table.AddSection("echo");
+  table.Add("echo.scale", &options->scale, {0, 10}, "times", "factor on the bytes of the images");
+  table.SetRenamed({{"echo.factor", "echo.scale"}});
+  return table;
+}
+
+inline std::unique_ptr<Node> MakeEchoNode(ConfigReader* config) {
+  return std::make_unique<EchoNode>(ReadOptions<EchoOptions>(config).scale);
 }
 
 }  // namespace airdos

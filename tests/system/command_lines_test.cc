@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -134,6 +137,30 @@ TEST_F(CommandLineTest, WhoeverWritesFilesKnowsForce) {
       EXPECT_TRUE(has([](const std::string& name) { return name == "--force"; }))
           << program << " " << arguments[0];
     }
+  }
+}
+
+// What one starts an own configuration from is the file that is installed, comments and all.
+TEST_F(CommandLineTest, EachProcessPrintsItsConfigurationAndWhatItMeans) {
+  const std::map<std::string, std::string> configs = {{"airdos-frontend", "frontend"},
+                                                      {"airdos-human-tracker", "human_tracker"},
+                                                      {"airdos-map-recorder", "map_recorder"},
+                                                      {"airdos-optimizer", "optimizer"},
+                                                      {"airdos-stereo-player", "stereo_player"}};
+  for (const auto& [program, config] : configs) {
+    std::ifstream file(AIRDOS_SOURCE_DIR "/launch_scripts/config/" + config + ".yaml");
+    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    const Answer printed = Run(program, {"--print-config"});
+    EXPECT_EQ(printed.exit_code, 0) << program;
+    EXPECT_EQ(printed.output, text) << program;
+    EXPECT_EQ(printed.errors, "") << program;
+    const Answer reference = Run(program, {"--help-config"});
+    EXPECT_EQ(reference.exit_code, 0) << program;
+    EXPECT_NE(reference.output.find(" to "), std::string::npos) << program;
+    const Answer refused = Run(program, {"--print-config", "--set", "a.b=1"});
+    EXPECT_EQ(refused.exit_code, 2) << program;
+    EXPECT_EQ(refused.output, "") << program;
+    EXPECT_EQ(refused.errors, program + ": --print-config excludes --set\n");
   }
 }
 

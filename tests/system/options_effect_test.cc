@@ -117,11 +117,14 @@ std::vector<Scene> Scenes() {
   };
   const Values starved = {{"frontend:tracking.max_observations", "4"},
                           {"optimizer:trust.max_relative_sigma", "1"}};
-  const Values short_memory = {
-      {"frontend:map.min_found_ratio", "0.9"},       {"optimizer:window.frames", "3"},
-      {"optimizer:window.key_frame_interval", "2"},  {"optimizer:window.key_frame_max_shared", "0"},
-      {"optimizer:window.max_key_frames", "1"},      {"optimizer:window.forget_after_frames", "2"},
-      {"optimizer:people.motion_form", "se3_parts"}, {"human_tracker:tracking.max_motion", "0.06"}};
+  const Values short_memory = {{"frontend:map.min_found_ratio", "0.9"},
+                               {"optimizer:window.frames", "3"},
+                               {"optimizer:window.key_frame_interval", "2"},
+                               {"optimizer:window.key_frame_max_shared", "0"},
+                               {"optimizer:window.max_key_frames", "1"},
+                               {"optimizer:window.forget_after_frames", "2"},
+                               {"optimizer:people.motion_form", "se3_parts"},
+                               {"human_tracker:tracking.max_motion_per_height", "0.06"}};
   return {{"as it is", 12, {}, as_it_is},
           {"interrupted", 14, {}, interrupted},
           {"starved", 14, starved, without_masks},

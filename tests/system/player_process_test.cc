@@ -325,6 +325,8 @@ TEST_F(PlayerProcessTest, BadInputIsOneLineAndExit2) {
   ExpectOneLine("airdos-echo", {"--config", "/nowhere.yaml"}, "/nowhere.yaml");
   ExpectOneLine("airdos-echo", {"--config", config, "--set", "echo.scale=99"}, "echo.scale");
   ExpectOneLine("airdos-echo", {"--config", config, "--set", "echo.none=1"}, "echo.none");
+  ExpectOneLine("airdos-echo", {"--config", config, "--set", "echo.factor=1"},
+                "'echo.factor' is called 'echo.scale' now");
   ExpectOneLine("airdos-echo", {"--config", config, "--pace", "fast"}, "fast");
   ExpectOneLine("airdos-echo", {"--config", config, "--deadline-s", "soon"}, "--deadline-s");
   ExpectOneLine("airdos-echo", {"--config", config, "--lcm-url", "foo://x"}, "foo://x");

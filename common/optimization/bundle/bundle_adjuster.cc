@@ -54,8 +54,8 @@ BundleSummary SolveBundle(const BundleOptions& options, BundleProblem* problem,
   Minimizer minimizer(options, graph.factor_graph(), memory);
   const MinimizerSummary first = minimizer.Minimize(options.max_iterations);
   MinimizerSummary last = first;
-  if (options.max_iterations_after_elimination > 0 && graph.Eliminate() > 0) {
-    last = minimizer.Minimize(options.max_iterations_after_elimination);
+  if (options.max_iterations_after_rejection > 0 && graph.Eliminate() > 0) {
+    last = minimizer.Minimize(options.max_iterations_after_rejection);
     last.num_iterations += first.num_iterations;
   }
   graph.WriteBack();

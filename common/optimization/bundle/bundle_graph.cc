@@ -10,10 +10,10 @@ namespace airdos {
 BundleGraph::BundleGraph(const BundleOptions& options, BundleProblem* problem)
     : options_(options),
       problem_(problem),
-      static_loss_(options.huber_static),
-      dynamic_loss_(options.huber_dynamic),
-      smoothness_loss_(options.huber_smoothness > 0
-                           ? std::make_unique<ceres::HuberLoss>(options.huber_smoothness)
+      static_loss_(options.huber_static_sigmas),
+      dynamic_loss_(options.huber_dynamic_sigmas),
+      smoothness_loss_(options.huber_smoothness_sigmas > 0
+                           ? std::make_unique<ceres::HuberLoss>(options.huber_smoothness_sigmas)
                            : nullptr) {
   AddPoses();
   AddLandmarks();
@@ -78,13 +78,13 @@ void BundleGraph::AddAccelerations() {
 double BundleGraph::Threshold(Kind kind) const {
   switch (kind) {
     case Kind::kLandmark:
-      return options_.eliminate_static;
+      return options_.reject_static_sigmas;
     case Kind::kJoint:
-      return options_.eliminate_joint;
+      return options_.reject_joint_sigmas;
     case Kind::kRigidity:
-      return options_.eliminate_rigidity;
+      return options_.reject_rigidity_sigmas;
     case Kind::kMotion:
-      return options_.eliminate_motion;
+      return options_.reject_motion_sigmas;
   }
   AIRDOS_CHECK(false);
 }

@@ -180,7 +180,7 @@ std::vector<LandmarkId> WindowMap::Absorb(const BundleProblem& problem) {
     Frame& frame = frames_.at(frame_id);
     Observation& observation = frame.observations.at(id);
     observation.num_eliminations = result.is_eliminated ? observation.num_eliminations + 1 : 0;
-    if (observation.num_eliminations < options_.max_eliminations) continue;
+    if (observation.num_eliminations < options_.max_rejections) continue;
     frame.observations.erase(id);
     landmarks_.at(id).frames.erase(frame_id);
     ++landmarks_.at(id).num_dropped;

@@ -22,8 +22,8 @@ struct WindowMapOptions {
   int max_key_frames = 60;            ///< in memory
   int forget_after_frames = 200;      ///< applies to a landmark that no kept frame sees
   double min_disparity_px = 0.5;      ///< below it an observation cannot start a landmark
-  int max_eliminations =
-      2;  ///< an observation that failed in so many adjustments in a row is dropped
+  /// An observation rejected in as many adjustments in a row is dropped for good.
+  int max_rejections = 2;
 };
 
 /// The optimizer's memory of the static scene: recent frames, key frames and static landmarks, in

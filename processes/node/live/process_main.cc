@@ -40,7 +40,7 @@ int RunNodeProcess(int argc, char** argv, const ProcessInfo& info) {
   using Pace = LcmRunnerOptions::Pace;
   CLI::App app(info.description, info.program);
   CommonArguments arguments;
-  AddCommonOptions(info.config_name, &app, &arguments);
+  AddCommonOptions(info.options, &app, &arguments);
   LcmRunnerOptions options;
   std::string pace = "lockstep";
   app.add_option("--pace", pace, "lockstep: every frame is worked on; realtime: the newest one")

@@ -14,21 +14,16 @@
 #include "common/util/error.h"
 #include "common/util/suggestion.h"
 #include "common/util/version.h"
+#include "common/util/words.h"
 
 namespace airdos {
 namespace {
 
 /// Wraps the text into lines of at most `width` columns.
 std::string Wrapped(const std::string& text, std::size_t width) {
-  std::istringstream words(text);
   std::string lines;
-  std::size_t column = 0;
-  for (std::string word; words >> word;) {
-    const bool is_full = column > 0 && column + 1 + word.size() > width;
-    if (column > 0) lines += is_full ? "\n" : " ";
-    column = column == 0 || is_full ? word.size() : column + 1 + word.size();
-    lines += word;
-  }
+  for (const std::string& line : WrapWords(text, width))
+    lines += (lines.empty() ? "" : "\n") + line;
   return lines;
 }
 

@@ -158,7 +158,7 @@ BundleOptions Ablation::MakeBundleOptions(AblationRow row) const {
   bundle.use_motion = row == AblationRow::kWithoutRigidity || row == AblationRow::kFull;
   bundle.compute_covariance = options_.compute_covariance;
   bundle.max_iterations = options_.max_iterations;
-  bundle.max_iterations_after_elimination = 0;
+  bundle.max_iterations_after_rejection = 0;
   bundle.function_tolerance = options_.function_tolerance;
   bundle.rigidity_sigma_m = sequence_.options.has_point_noise ? options_.rigidity_sigma_m
                                                               : options_.stereo_rigidity_sigma_m;

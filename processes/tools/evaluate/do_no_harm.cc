@@ -16,7 +16,7 @@ namespace {
 /// optimal for these poses, since nothing else constrains them.
 double StaticDeviance(BundleOptions bundle, BundleProblem problem) {
   bundle.use_people = bundle.compute_covariance = false;
-  bundle.max_iterations = bundle.max_iterations_after_elimination = 0;
+  bundle.max_iterations = bundle.max_iterations_after_rejection = 0;
   return 2 * SolveBundle(bundle, &problem).initial_cost;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/config/config_reader.h"
+#include "common/config/option_pages.h"
 #include "common/util/error.h"
 #include "common/util/input_file.h"
 #include "common/util/output_folder.h"
@@ -30,6 +31,7 @@ constexpr std::int64_t kSession = 1;  // of data sets; always the same, so that 
 
 struct Process {
   std::string name;  // in its configuration file and in overrides
+  RenamedKeys renamed;
   // Not set for the map recorder, which is created last.
   std::function<std::unique_ptr<Node>(ConfigReader*)> make_node;
   std::vector<std::string> publishes;
@@ -37,10 +39,19 @@ struct Process {
 
 const std::vector<Process>& Processes() {
   static const std::vector<Process> processes{
-      {"frontend", MakeFrontendNode, {channel::kStaticFeatures}},
-      {"human_tracker", MakeHumanTrackerNode, {channel::kHumanObservations}},
-      {"optimizer", MakeOptimizerNode, {channel::kStateEstimate, channel::kMapUpdate}},
-      {"map_recorder", nullptr, {}}};
+      {"frontend",
+       PagesOf<FrontendOptions>().renamed,
+       MakeFrontendNode,
+       {channel::kStaticFeatures}},
+      {"human_tracker",
+       PagesOf<HumanTrackerOptions>().renamed,
+       MakeHumanTrackerNode,
+       {channel::kHumanObservations}},
+      {"optimizer",
+       PagesOf<OptimizerOptions>().renamed,
+       MakeOptimizerNode,
+       {channel::kStateEstimate, channel::kMapUpdate}},
+      {"map_recorder", PagesOf<MapRecorderOptions>().renamed, nullptr, {}}};
   return processes;
 }
 
@@ -56,7 +67,8 @@ std::string ConfigPath(const ReplaySetup& setup, const std::string& process) {
 Configs ReadConfigs(const ReplaySetup& setup) {
   Configs configs;
   for (const Process& process : Processes()) {
-    configs.emplace(process.name, ConfigReader::FromFile(ConfigPath(setup, process.name)));
+    configs.emplace(process.name,
+                    ConfigReader::FromFile(ConfigPath(setup, process.name), process.renamed));
   }
   return configs;
 }
@@ -76,6 +88,7 @@ std::string OwnerOf(const std::string& text, const Configs& configs) {
     owner = process;
   }
   if (owner.empty()) {
+    for (const auto& [process, config] : configs) config.RequireNotRenamed(key);
     throw InputError("--set '" + text + "': no process has the key '" + key + "'" +
                      DidYouMean(key, all_keys));
   }

@@ -90,7 +90,7 @@ TEST(StereoLevels, PartnersAreALevelApartAtMost) {
 
 TEST(StereoLevels, PartnersDifferBySoManyBitsAtMost) {
   FeatureStereoMatcherOptions options;
-  options.max_hamming = 75;
+  options.max_hamming_bits = 75;
   EXPECT_TRUE(Matches(kLeft, Partner(0, 0, 75), options));
   EXPECT_FALSE(Matches(kLeft, Partner(0, 0, 76), options));
 }

@@ -68,11 +68,12 @@ TEST(StereoMatcher, RefusesWhatCannotBeOnePerson) {
   BodyKeypoints shifted = left;
   for (BodyKeypoint& joint : shifted) joint.u_px -= 770 * 0.25 / 2;
   const auto fit = FitStereoPair({}, kTestCamera, left, shifted);
-  EXPECT_TRUE(!fit || fit->cost > StereoMatcherOptions().gate);
+  EXPECT_TRUE(!fit || fit->cost > StereoMatcherOptions().max_mean_squared_sigmas);
   // Another row.
   BodyKeypoints lower = Exact(WalkingPerson({0, 0, 5}, 0), true);
   for (BodyKeypoint& joint : lower) joint.v_px += 15;
-  EXPECT_GT(FitStereoPair({}, kTestCamera, left, lower)->cost, StereoMatcherOptions().gate);
+  EXPECT_GT(FitStereoPair({}, kTestCamera, left, lower)->cost,
+            StereoMatcherOptions().max_mean_squared_sigmas);
 }
 
 TEST(Triangulator, ExactWithoutNoise) {
