@@ -166,12 +166,12 @@ TEST_F(DatasetTest, LendsThePublicCalibrationOnlyWhereItIsAskedFor) {
   EXPECT_EQ(sequence->camera().baseline_m, 0.25);
   EXPECT_NE(MessageOf([&] {
               OpenStereoSequence(folder_.string(), {"zed"});
-            }).find("calibration 'zed': is not known"),
+            }).find("calibration 'zed': is unknown"),
             std::string::npos);
   WriteImages("image_0", "image_1", 1, 320, 240);
   EXPECT_NE(MessageOf([&] {
               OpenStereoSequence(folder_.string(), {kPublicCalibration});
-            }).find("is not of the public set"),
+            }).find("is not that of the public data set"),
             std::string::npos);
 }
 

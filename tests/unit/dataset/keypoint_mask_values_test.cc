@@ -252,11 +252,11 @@ TEST_F(KeypointMaskValuesTest, DataSetsBelowAreListedUpToTwelve) {
   make(0);
   EXPECT_TRUE(Holds(ExplainFolder(folder_.path()), "the data set is the folder below it"));
   make(1);
-  EXPECT_TRUE(Holds(ExplainFolder(folder_.path()), "holds 2 data sets: s10, s11; give"));
+  EXPECT_TRUE(Holds(ExplainFolder(folder_.path()), "holds 2 data sets: s10, s11; choose"));
   for (int i = 2; i < 12; ++i) make(i);
-  EXPECT_TRUE(Holds(ExplainFolder(folder_.path()), "s20, s21; give"));
+  EXPECT_TRUE(Holds(ExplainFolder(folder_.path()), "s20, s21; choose"));
   make(12);
-  EXPECT_TRUE(Holds(ExplainFolder(folder_.path()), "s20, s21 and 1 more; give"));
+  EXPECT_TRUE(Holds(ExplainFolder(folder_.path()), "s20, s21 and 1 more; choose"));
 }
 
 TEST(SideSwapValuesTest, EachConcernsItsJointsInBothDirections) {

@@ -221,7 +221,7 @@ TEST_F(UserCases, Case03bNoMatchNamesBothRangesAndTheLikelyCause) {
   EXPECT_TRUE(Has(error, "only 0 of 100 estimated poses match")) << error;
   EXPECT_TRUE(Has(error, "0.000000 to 9.900000 s")) << error;
   EXPECT_TRUE(Has(error, "1400000000.000000 to 1400000009.900000 s")) << error;
-  EXPECT_TRUE(Has(error, "since 1970")) << error;
+  EXPECT_TRUE(Has(error, "from 1970")) << error;
 
   Style local;
   local.start_s = kStart + 7200;

@@ -283,7 +283,7 @@ TEST_F(UserCases, CaseC07AFolderInWhichNothingWasWrittenIsLeftAsItWas) {
   { OutputFolder unused(Path("old"), {}); }
   EXPECT_TRUE(fs::is_empty(Path("old")));
   Write("file", "");
-  EXPECT_TRUE(Has(MessageOf([&] { OutputFolder(Path("file"), {}); }), "cannot be made"));
+  EXPECT_TRUE(Has(MessageOf([&] { OutputFolder(Path("file"), {}); }), "cannot be created"));
 }
 
 TEST_F(UserCases, CaseC06InputsOfAnotherKindAreOneLineAndNoWait) {
