@@ -19,7 +19,7 @@ using RenamedKeys = std::map<std::string, std::string>;
 class ConfigReader {
  public:
   static ConfigReader FromFile(const std::string& path, const RenamedKeys& renamed = {});
-  /// `name` stands for the file in messages.
+  /// `name` stands for the file in messages; a key of `renamed` is refused, naming the new one.
   static ConfigReader FromString(const std::string& text, const std::string& name,
                                  const RenamedKeys& renamed = {});
 

@@ -23,6 +23,7 @@ BundleOptions Options() {
   options.max_iterations = 1;
   options.max_iterations_after_rejection = 0;
   options.huber_static_sigmas = options.huber_dynamic_sigmas = kNone;
+  options.person_speed_m_s = 0;
   return options;
 }
 

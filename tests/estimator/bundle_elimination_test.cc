@@ -25,6 +25,7 @@ BundleOptions Options() {
   options.reject_rigidity_sigmas = options.reject_motion_sigmas = kNone;
   options.rigidity_sigma_m = 0.02;
   options.motion_sigma_m = 0.05;
+  options.person_speed_m_s = 0;
   return options;
 }
 

@@ -74,9 +74,9 @@ std::vector<Setting> Settings() {
        [](R* r, B* b) {
          r->has_accelerations = true;
          r->has_known_lengths = true;
-         b->person_speed_m_s = 1;
          b->huber_smoothness_sigmas = 1;
        }},
+      {"UnknownSpeed", [](R*, B* b) { b->person_speed_m_s = 0; }},
       {"NoLandmarks",
        [](R* r, B*) {
          r->num_landmarks = 0;

@@ -147,6 +147,7 @@ class Reader {
     options.function_tolerance = 1e-6;
     options.huber_static_sigmas = options.huber_dynamic_sigmas = 1e9;
     options.motion_max_gap_s = std::numeric_limits<double>::infinity();
+    options.person_speed_m_s = 0;
   }
 
   std::string path_;

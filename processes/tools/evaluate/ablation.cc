@@ -162,6 +162,7 @@ BundleOptions Ablation::MakeBundleOptions(AblationRow row) const {
   bundle.function_tolerance = options_.function_tolerance;
   bundle.rigidity_sigma_m = sequence_.options.has_point_noise ? options_.rigidity_sigma_m
                                                               : options_.stereo_rigidity_sigma_m;
+  bundle.person_speed_m_s = 0;  // the paper's simulation knows nothing of how fast people are
   return bundle;
 }
 
