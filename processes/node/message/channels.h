@@ -1,6 +1,8 @@
 #ifndef AIRDOS_PROCESSES_NODE_MESSAGE_CHANNELS_H_
 #define AIRDOS_PROCESSES_NODE_MESSAGE_CHANNELS_H_
 
+// Installed as airdos/channels.h.
+
 namespace airdos::channel {
 
 // One type and one publisher each: lcmtypes/README.md.
