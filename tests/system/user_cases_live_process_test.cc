@@ -194,6 +194,7 @@ TEST_F(UserCases, CaseTwoProcessesOfOneName) {
 }
 
 TEST_F(UserCases, CaseNoCalibrationIsSaid) {
+  chain_->ExpectInVain();
   chain_->SetNodeArguments({"--deadline-s", "0.5"});
   ASSERT_NO_FATAL_FAILURE(chain_->StartNodes());
   for (const LogEvent& event : SampleEvents(0, 3)) {
@@ -202,6 +203,9 @@ TEST_F(UserCases, CaseNoCalibrationIsSaid) {
   for (const std::string program : {"airdos-frontend", "airdos-human-tracker"}) {
     ExpectWarning(program, "no CALIBRATION yet for session 1: no pose will come until it does");
   }
+  StopAndHear();
+  EXPECT_EQ(listener_->num_messages(channel::kStateEstimate), 0);
+  EXPECT_EQ(listener_->num_messages(channel::kFrameDone), 0) << "the optimizer never hears of them";
 }
 
 TEST_F(UserCases, CaseHangUpEndsAProcessAsTermDoes) {
