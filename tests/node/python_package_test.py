@@ -158,11 +158,10 @@ class CodecTest(unittest.TestCase):
 
 
 class GeneratorTest(unittest.TestCase):
-    def refuses(self, text, lines):
+    def refuses(self, text, lines, header="uint64_t hash = 0x1LL"):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "x_t.lcm"
             path.write_text("\n".join(lines))
-            header = "uint64_t hash = 0x1LL" if "hash" not in text else ""
             (pathlib.Path(folder) / "x_t.hpp").write_text(header)
             command = [sys.executable, SOURCE / "lcmtypes/generate_python.py", "--headers", folder, "--output", folder]
             command += ["--channels", SOURCE / "processes/node/message/channels.h", path]
@@ -171,10 +170,12 @@ class GeneratorTest(unittest.TestCase):
             self.assertIn(text, done.stderr)
 
     def test_says_what_it_does_not_know(self):
-        self.refuses("x_t.lcm:3: generate_python.py does not know this: int8_t a, b;", ["package airdos;", "struct x_t {", "int8_t a, b;", "}"])
+        unknown = "x_t.lcm:3: generate_python.py does not know this: int8_t a, b;"
+        self.refuses(unknown, ["package airdos;", "struct x_t {", "int8_t a, b;", "}"])
         self.refuses("no type other_t", ["package airdos;", "struct x_t {", "  other_t other;", "}"])
         self.refuses("x_t.lcm:2:", ["package airdos;", "struct y_t {", "  int8_t a;", "}"])
         self.refuses("no struct", ["package airdos;"])
+        self.refuses("x_t.hpp: 0 fingerprints, not one", ["struct x_t {", "  int8_t a;", "}"], header="")
 
 
 class AssemblerTest(unittest.TestCase):
