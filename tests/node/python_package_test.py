@@ -241,20 +241,25 @@ class AssemblerTest(unittest.TestCase):
                 datagram[generator.randrange(min(len(datagram), 30))] = generator.randrange(256)
             assembler.take(bytes(datagram[: generator.randrange(len(datagram))]), generator.randrange(100))
 
-    def test_a_flood_of_fragments_is_bounded(self):
-        limit = bus.MAX_WAITING_BYTES
-        bus.MAX_WAITING_BYTES = 1 << 20
-        self.addCleanup(setattr, bus, "MAX_WAITING_BYTES", limit)
+    def flood(self, num, part, num_senders):
+        """The most memory that so many fragments take, none of which completes a message."""
         assembler = bus.Assembler()
         tracemalloc.start()
-        for index in range(20000):  # 60 MB, none of them a whole message; then empty ones
-            part = bytes(3000) if index < 10000 else b""
-            head = struct.pack(">4sIIIHH", b"LC03", index // 60000, 30 << 20, 0, index % 60000, 60001)
-            assembler.take(head + part, index % 200)
+        for index in range(num):
+            head = struct.pack(">4sIIIHH", b"LC03", 1, 30 << 20, 0, index // num_senders, 60001)
+            assembler.take(head + part, index % num_senders)
         peak = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
-        self.assertLess(peak, 3 << 20)
-        self.assertGreater(assembler.num_incomplete, 100)
+        self.assertGreater(assembler.num_incomplete, 0)
+        return peak
+
+    def test_a_flood_of_fragments_is_bounded(self):
+        self.addCleanup(setattr, bus, "MAX_WAITING_BYTES", bus.MAX_WAITING_BYTES)
+        bus.MAX_WAITING_BYTES = 1 << 20
+        self.assertLess(self.flood(2000, bytes(3000), num_senders=10), 2 << 20)
+        self.assertLess(self.flood(20000, b"", num_senders=1), 2 << 20)
+        bus.MAX_WAITING_BYTES = 1 << 40
+        self.assertLess(self.flood(20000, b"", num_senders=20000), 1 << 20)
 
 
 class BusTest(unittest.TestCase):
@@ -304,6 +309,9 @@ class LogTest(unittest.TestCase):
             reader = log.LogReader(self.path)
             self.assertEqual([event.utime for event in reader], [0, 2, 3, 4], place)
             self.assertEqual(reader.num_damaged_bytes, size)
+        for between in (b"x", b"\xed\xa1\xda", b"x" * 100):
+            pathlib.Path(self.path).write_bytes(whole[:size] + between + whole[size:])
+            self.assertEqual(len(list(log.LogReader(self.path))), 5)
         pathlib.Path(self.path).write_bytes(whole[:-1])
         self.assertEqual(len(list(log.LogReader(self.path))), 4)
         pathlib.Path(self.path).write_bytes(b"")

@@ -140,10 +140,6 @@ class Assembler:
             waiting = self._waiting[sender] = _Waiting((number, size, count))
         if index in waiting.parts:
             return None
-        waiting.num_payload += len(part)
-        if waiting.num_payload > size + MAX_CHANNEL + 1:
-            self._forget(sender)
-            raise ValueError("more than announced")
         waiting.parts[index] = (offset, part)
         waiting.num_bytes += len(part) + _COST_OF_A_FRAGMENT
         self._num_bytes += len(part) + _COST_OF_A_FRAGMENT
@@ -167,7 +163,6 @@ class _Waiting:
     def __init__(self, key):
         self.key = key
         self.parts = {}
-        self.num_payload = 0
         self.num_bytes = 0  # with what it costs to keep them
 
 
