@@ -253,7 +253,7 @@ TEST(OptimizerNodeTest, PartsDoNotOverlap) {
   }
   for (std::int64_t i = 0; i < 100; ++i) {
     changes.humans.emplace_back();
-    changes.humans.back().track_id = HumanId{i};
+    changes.humans.back().id = HumanId{i};
   }
   const std::vector<map_update_t> parts = ToMapUpdates({1, 2, 3}, changes, repeated);
   ASSERT_GT(parts.size(), 2U);

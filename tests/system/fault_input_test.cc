@@ -237,34 +237,38 @@ TEST_F(FaultInputTest, WithPeopleOffTheHumanTrackerIsNotNeeded) {
   }
 }
 
-/// The estimates that airdos-replay makes of a log, without their times.
-std::vector<std::vector<std::uint8_t>> ReplayedEstimates(const std::string& log,
-                                                         const std::string& folder) {
+/// Where airdos-replay says that the camera is in each frame of a log.
+std::vector<Eigen::Vector3d> ReplayedPositions(const std::string& log, const std::string& folder) {
   ReplayDigests(log, folder);
-  std::vector<std::vector<std::uint8_t>> estimates;
+  std::vector<Eigen::Vector3d> positions;
   EventLogReader reader(folder + "replayed.lcm");
   for (auto event = reader.Next(); event; event = reader.Next()) {
     if (event->channel != channel::kStateEstimate) continue;
     state_estimate_t estimate = {};
     EXPECT_TRUE(Decode(event->payload.data(), event->payload.size(), &estimate));
-    estimate.utime = 0;
-    estimates.push_back(Encode(estimate));
+    positions.emplace_back(Eigen::Map<const Eigen::Vector3d>(estimate.position_W_C));
   }
-  return estimates;
+  return positions;
 }
 
-// A camera's clock may count from 1970, or from when it was switched on.
+// A camera's clock may count from 1970, or from when it was switched on. Lost: a double of seconds
+// since 1970 is exact to 0.24 us, in which whoever carries a camera moves by less than 1 um.
 TEST_F(FaultInputTest, ItDoesNotMatterFromWhereTimesCount) {
   constexpr std::int64_t kNumImages = 10;
   constexpr std::int64_t kSince1970_us = 1795000000000000;
+  constexpr double kRounding_m = 1e-6;
   const auto replay = [&](std::int64_t origin_us) {
     std::vector<LogEvent> events = SampleEvents(0, kNumImages - 1);
     for (LogEvent& event : events) SetUtime(UtimeOf(event) + origin_us, &event);
-    return ReplayedEstimates(Write(events), folder_);
+    return ReplayedPositions(Write(events), folder_);
   };
   const auto since_start = replay(0);
-  EXPECT_EQ(since_start.size(), static_cast<std::size_t>(kNumImages));
-  EXPECT_EQ(replay(kSince1970_us), since_start);
+  const auto since_1970 = replay(kSince1970_us);
+  ASSERT_EQ(since_start.size(), static_cast<std::size_t>(kNumImages));
+  ASSERT_EQ(since_1970.size(), since_start.size());
+  for (std::size_t i = 0; i < since_start.size(); ++i) {
+    EXPECT_LT((since_1970[i] - since_start[i]).norm(), kRounding_m) << i;
+  }
 }
 
 // The calibration comes with frame 3. Lost: nothing, the frames before wait for it.

@@ -194,7 +194,6 @@ TEST_F(UserCases, CaseTwoProcessesOfOneName) {
 }
 
 TEST_F(UserCases, CaseNoCalibrationIsSaid) {
-  chain_->ExpectInVain();
   chain_->SetNodeArguments({"--deadline-s", "0.5"});
   ASSERT_NO_FATAL_FAILURE(chain_->StartNodes());
   for (const LogEvent& event : SampleEvents(0, 3)) {
