@@ -16,7 +16,7 @@ AIRDOS_PACKAGES=(
   liblcm-dev liblcm-bin liblcm-java libjchart2d-java
   libopencv-dev libpng-dev libeigen3-dev libceres-dev libyaml-cpp-dev libzstd-dev libssl-dev libcli11-dev nlohmann-json3-dev
   zlib1g-dev libgtest-dev libgmock-dev libbenchmark-dev
-  default-jdk-headless default-jre
+  default-jdk-headless default-jre python3 pkgconf
   iproute2 xvfb xauth jq
 )
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/geometry/stereo_camera.h"
+#include "common/util/check.h"
 #include "processes/node/frame_joiner.h"
 #include "processes/node/message/channels.h"
 #include "processes/node/message/conversions.h"

@@ -404,6 +404,35 @@ TEST(UserCases, CaseImagesThatAreExchanged) {
   EXPECT_EQ(said.find("left and right images are exchanged: "), 0u) << said;
 }
 
+/// What the front end warns of where the cameras are exchanged, the right one so much later.
+std::string WarningsOfExchangedCameras(std::int64_t right_later_us) {
+  FrontendNode node(WithoutFeedback());
+  Send(channel::kCalibration, Calibration(), &node);
+  for (int k = 0; k < 12; ++k) {
+    image_t left = Left(k);
+    image_t right = Right(k);
+    std::swap(left.data, right.data);
+    std::swap(left.num_bytes, right.num_bytes);
+    right.utime += right_later_us;
+    SendNobody(k, &node);
+    Send(channel::kPersonMask, NoMask(k), &node);
+    Send(channel::kCameraLeft, left, &node);
+    Send(channel::kCameraRight, right, &node);
+    StepAll(&node);
+  }
+  return AllWarnings(node);
+}
+
+TEST(UserCases, Case86cImagesOfOtherTimesAreNotHeldAgainstEachOther) {
+  constexpr char kExchanged[] = "left and right images are exchanged";
+  for (const std::int64_t sign : {-1, 1}) {
+    std::string said = WarningsOfExchangedCameras(sign * 20000);
+    EXPECT_NE(said.find(kExchanged), std::string::npos) << said;
+    said = WarningsOfExchangedCameras(sign * 20001);
+    EXPECT_EQ(said.find(kExchanged), std::string::npos) << said;
+  }
+}
+
 TEST(UserCases, CaseRowErrorOfImagesWithoutCorners) {
   const cv::Mat grey(192, 320, CV_8UC1, cv::Scalar(90));
   EXPECT_FALSE(MeasureRowError(grey, grey, 300));

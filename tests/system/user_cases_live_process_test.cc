@@ -202,6 +202,9 @@ TEST_F(UserCases, CaseNoCalibrationIsSaid) {
   for (const std::string program : {"airdos-frontend", "airdos-human-tracker"}) {
     ExpectWarning(program, "no CALIBRATION yet for session 1: there are no poses until it arrives");
   }
+  StopAndHear();
+  EXPECT_EQ(listener_->num_messages(channel::kStateEstimate), 0);
+  EXPECT_EQ(listener_->num_messages(channel::kFrameDone), 0) << "the optimizer never hears of them";
 }
 
 TEST_F(UserCases, CaseHangUpEndsAProcessAsTermDoes) {

@@ -1,6 +1,8 @@
 #ifndef AIRDOS_PROCESSES_NODE_MESSAGE_CHANNELS_H_
 #define AIRDOS_PROCESSES_NODE_MESSAGE_CHANNELS_H_
 
+// Installed as airdos/channels.h.
+
 namespace airdos::channel {
 
 // Each channel has one type and one publisher: lcmtypes/README.md.
