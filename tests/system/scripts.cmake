@@ -18,3 +18,7 @@ add_test(NAME long_run_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/long_run_test.sh
 set_tests_properties(long_run_test PROPERTIES LABELS system TIMEOUT 600 SKIP_RETURN_CODE 77 COST 100)
 add_test(NAME mutation_lists_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/mutation_lists_test.sh ${PROJECT_SOURCE_DIR})
 set_tests_properties(mutation_lists_test PROPERTIES LABELS system TIMEOUT 180)
+add_test(NAME lint_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/lint_test.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(lint_test PROPERTIES LABELS system TIMEOUT 600 SKIP_RETURN_CODE 77)
+add_test(NAME docs_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/docs_test.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(docs_test PROPERTIES LABELS system TIMEOUT 600 SKIP_RETURN_CODE 77)
