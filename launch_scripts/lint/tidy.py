@@ -2,8 +2,8 @@
 """Runs clang-tidy over the units of a build folder, a batch of them at a time, and remembers which were clean.
 
 Nearly all of clang-tidy's time goes into the headers of Eigen, OpenCV, Ceres and GoogleTest, which it reads again for each
-unit. So the units of a folder are included into one; those that define the same local name go to different batches, and a batch
-that does not compile is halved until it does. A batch whose text, with all headers of ours that it includes, was clean
+unit. So units are included into one, their local names, where two have the same, renamed by macros; where that cannot be, they go to
+different batches, and a batch that does not compile is halved until it does. A batch whose text, with all headers of ours that it includes, was clean
 once is not looked at again.
 
 Exit code 0 if there is nothing to report, 1 if there is, 2 for wrong arguments.
@@ -12,6 +12,7 @@ Exit code 0 if there is nothing to report, 1 if there is, 2 for wrong arguments.
 import argparse
 import concurrent.futures
 import hashlib
+import itertools
 import json
 import os
 import re
@@ -26,6 +27,7 @@ TEST = re.compile(r"^(?:TEST|TEST_F|TEST_P|TYPED_TEST|BENCHMARK\w*)\((\w+)(?:, (
 ANONYMOUS = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.M | re.S)
 VARIABLE = re.compile(r"^(?:static |inline |constexpr |const |thread_local )+[^(={;]*?(\w+)(?:\[[^\]]*\])*\s*[={;]", re.M)
 FUNCTION = re.compile(r"^\w[^=;(\n]*?\b(\w+)\(", re.M)
+WORD = re.compile(r"\w+")
 FINDING = re.compile(r"^(?P<file>/[^:\n]+):(?P<line>\d+):(?P<column>\d+): (?:warning|error): .*\[(?P<check>[^\]]+)\]$")
 
 
@@ -41,6 +43,7 @@ class Tree:
         self.folders = (root, os.path.join(build, "generated"))
         self.texts = {}
         self.closures = {}
+        self.cache = {}
 
     def text(self, path):
         if path not in self.texts:
@@ -63,17 +66,26 @@ class Tree:
             self.closures[path] = frozenset(seen)
         return self.closures[path]
 
+    def tests(self, path):
+        return {"_".join(filter(None, groups)) for groups in TEST.findall(self.text(path))}
+
     def local_names(self, path):
         """What would be defined twice if two units with the same name were one."""
         text = self.text(path)
-        names = {"_".join(filter(None, groups)) for groups in TEST.findall(text)}
+        names = self.tests(path)
         for inside in ANONYMOUS.findall(text) + re.findall(r"^static .*?[;{]$", text, re.M):
             for pattern in (TYPE, VARIABLE, FUNCTION):
                 names.update(pattern.findall(inside))
         return names
 
-    def header_types(self, closure):
-        return {name for path in closure if path.endswith(".h") for name in TYPE.findall(self.text(path))}
+    def in_headers(self, pattern, closure):
+        return {name for path in closure if path.endswith(".h") for name in self.found(pattern, path)}
+
+    def found(self, pattern, path):
+        key = (pattern, path)
+        if key not in self.cache:
+            self.cache[key] = frozenset(pattern.findall(self.text(path)))
+        return self.cache[key]
 
 
 class Unit:
@@ -83,15 +95,18 @@ class Unit:
         self.flags = words[1 : words.index("-o")]
         self.closure = tree.closure(path)
         self.names = tree.local_names(path)
-        self.types = tree.header_types(self.closure)
+        self.types = tree.in_headers(TYPE, self.closure)
+        # A macro would change these in headers, too, or does not reach them.
+        self.fixed_names = self.names & (tree.in_headers(WORD, self.closure) | tree.tests(path))
         top = os.path.relpath(path, tree.folders[0]).split(os.sep)[0]
         self.group = (top, next((word for word in self.flags if word.endswith(".pch")), ""))
 
     def fits(self, batch):
         names = set().union(*(unit.names for unit in batch))
+        fixed = set().union(*(unit.fixed_names for unit in batch))
         types = set().union(*(unit.types for unit in batch))
         # Its own header may declare a name that it also defines locally only if it compiles by itself.
-        return not (self.names & names or self.names & (types - self.types) or names & (self.types - types))
+        return not (self.fixed_names & names or self.names & fixed or self.names & (types - self.types) or names & (self.types - types))
 
 
 def read_units(tree, build):
@@ -128,6 +143,18 @@ def merged_flags(batch):
             elif word == "-isystem" and unit.flags[i + 1] not in flags:
                 flags += unit.flags[i : i + 2]
     return flags
+
+
+def joined(batch):
+    """The text of a unit that is all of these."""
+    lines = []
+    for number, unit in enumerate(batch):
+        same = sorted(name for name in unit.names if any(name in other.names for other in batch if other is not unit))
+        lines += [f"#define {name} {name}_{number}" for name in same]
+        # The check of includes of .cc files looks at the main file only, which this is.
+        lines += [f'#include "{unit.path}"  // NOLINT']
+        lines += [f"#undef {name}" for name in same]
+    return "\n".join(lines) + "\n"
 
 
 class Runner:
@@ -180,8 +207,7 @@ class Runner:
         if len(batch) > 1:
             source = os.path.join(self.folder, f"batch_{key[:16]}.cc")
             with open(source, "w", encoding="utf-8") as file:
-                # The check of includes of .cc files looks at the main file only, which this is.
-                file.writelines(f'#include "{unit.path}"  // NOLINT\n' for unit in batch)
+                file.write(joined(batch))
         command = [self.options.program, "--quiet", f"--config-file={self.options.root}/.clang-tidy", *self.options.checks]
         command += ["--fix"] if self.options.fix else []
         command += [source, "--", *merged_flags(batch)]
@@ -232,7 +258,7 @@ def print_findings(outputs):
                 shown = match.groups() not in seen
                 seen.add(match.groups())
             if shown:
-                print(line)
+                print(line, flush=True)
     return len(seen)
 
 
@@ -279,7 +305,7 @@ def main():
     batches.sort(key=len, reverse=True)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         headers, run = check_lone_headers(tree, todo, runner)
-        num = print_findings([*pool.map(runner.run, batches), *pool.map(run, headers)])
+        num = print_findings(itertools.chain(pool.map(runner.run, batches), pool.map(run, headers)))
     print(f"clang-tidy: {len(todo)} units in {len(batches)} batches, {len(headers)} headers by themselves, {num} findings")
     return int(num > 0)
 

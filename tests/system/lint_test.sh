@@ -136,7 +136,16 @@ a_mistake_in_a_batch_is_found_each_time() {
 the_same_local_name_is_no_mistake() {
   unit three <<< $'namespace {\nconstexpr int kStart = 3;\n}  // namespace\n\nint Three() { return kStart; }'
   tidied 0
-  says out '3 units in 2 batches'
+  says out '3 units in 1 batches'
+  ran 1 'clang-tidy --quiet'
+  # A type of a header is not to be renamed.
+  printf '#pragma once\n\nstruct Thing {};\n' > "$root/common/util/thing.h"
+  unit three <<< $'#include "common/util/thing.h"\n\nThing Three() { return {}; }'
+  unit three_too <<< $'namespace {\nstruct Thing {\n  int a = 0;\n};\n}  // namespace\n\nint ThreeToo() { return Thing().a; }'
+  tidied 0
+  says out '4 units in 2 batches'
+  ran 2 'clang-tidy --quiet'
+  rm "$root"/common/util/{thing.h,three_too.cc}
   # What the names do not tell, the compiler does: such a batch is halved, and that is remembered.
   unit four <<< $'#define SAME int kStart = 4;\nnamespace {\nconst SAME\n}  // namespace\n\nint Four() { return kStart; }'
   rm "$root/common/util/three.cc"
