@@ -28,7 +28,9 @@ while [ $# -gt 0 ]; do
       interface=$2
       shift ;;
     -h|--help) usage; exit 0 ;;
-    --version) . "$(dirname "$0")/common.sh" --version ;; # prints the version and exits
+    --version)
+      # shellcheck source=launch_scripts/common.sh
+      . "$(dirname "$0")/common.sh" --version ;; # prints the version and exits
     *) echo "network_setup.sh: unknown argument '$1'" >&2; exit 2 ;;
   esac
   shift
@@ -46,9 +48,13 @@ as_root() {
   if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
 }
 
+# shellcheck disable=SC2317 # require() calls it
 has_flag() { ip link show dev "$interface" | head -n 1 | grep -q "[<,]$1[,>]"; }
+# shellcheck disable=SC2317 # require() calls it
 is_up() { has_flag UP; }
+# shellcheck disable=SC2317 # require() calls it
 is_multicast() { has_flag MULTICAST; }
+# shellcheck disable=SC2317 # require() calls it
 has_route() {
   if $check_only; then [ "$(interface_in_use)" = "$interface" ]; return; fi
   ip -4 route show exact 224.0.0.0/4 | grep -q "dev $interface\b"

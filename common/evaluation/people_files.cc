@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <exception>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <utility>

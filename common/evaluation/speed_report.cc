@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <exception>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>

@@ -2,6 +2,7 @@
 // and when it goes on.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <string>

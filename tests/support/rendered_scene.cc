@@ -1,5 +1,6 @@
 #include "tests/support/rendered_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>

@@ -1,5 +1,7 @@
 #include "tests/support/sample_messages.h"
 
+#include <vector>
+
 namespace airdos {
 namespace {
 

@@ -22,3 +22,7 @@ set_tests_properties(mutation_lists_test PROPERTIES LABELS system TIMEOUT 180)
 add_test(NAME clients_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/clients_test.sh ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR}
                                    $<IF:$<TARGET_EXISTS:airdos_jar>,JAR,NO_JAR>)
 set_tests_properties(clients_test PROPERTIES LABELS system TIMEOUT 600 SKIP_RETURN_CODE 77 ENVIRONMENT CXX=${CMAKE_CXX_COMPILER})
+add_test(NAME lint_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/lint_test.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(lint_test PROPERTIES LABELS system TIMEOUT 600 SKIP_RETURN_CODE 77)
+add_test(NAME docs_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/docs_test.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(docs_test PROPERTIES LABELS system TIMEOUT 600 SKIP_RETURN_CODE 77)

@@ -20,7 +20,7 @@ each_script_says_its_version() {
 
 wrong_options_exit_2_in_one_line() {
   local script
-  for script in setup demo test fuzz spy run_live replay_log long_run; do
+  for script in setup demo test lint docs fuzz spy run_live replay_log long_run; do
     expect 0 "Usage: launch_scripts/$script.sh" "$scripts/$script.sh" --help
     expect 2 "--no-such-option" "$scripts/$script.sh" --no-such-option
   done

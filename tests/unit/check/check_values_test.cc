@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <tuple>
 
 #include "common/check/check_camera.h"
 #include "common/check/check_files.h"
