@@ -9,7 +9,8 @@
 namespace airdos {
 
 /// Seeded random numbers that are the same with every standard library: the engine is specified to
-/// the bit, the standard's distributions are not.
+/// the bit, the standard's distributions are not. Two draws never stand in one expression: which
+/// one comes first would be the compiler's choice.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
