@@ -4,7 +4,7 @@
 #
 # Usage: launch_scripts/lint.sh [--fix] [--all] [--fast] [--jobs N] [PATH…]
 #   --fix     mend what clang-format, and clang-tidy in the units named, can mend
-#   --all     clang-tidy with its dear checks too (the static analyzer, see DEAR_CHECKS), each unit by itself: an hour or two of one
+#   --all     clang-tidy with its expensive checks too (the static analyzer, see EXPENSIVE_CHECKS), each unit by itself: an hour or two of one
 #             processor; CI does it weekly
 #   --fast    all but clang-tidy: seconds, for a commit hook
 #   --jobs N  so many at a time (default: one a processor)
@@ -21,8 +21,8 @@ readonly LINT_SCRIPTS=$AIRDOS_ROOT/launch_scripts/lint
 readonly LINT_BUILD=${AIRDOS_LINT_BUILD:-$AIRDOS_ROOT/build-lint}
 # Of the checks in .clang-tidy, those that take about as long as all others, and one that is wrong where units are joined: g++
 # warns of shadows in each build.
-readonly DEAR_CHECKS='-clang-analyzer-*,-bugprone-reserved-identifier,-bugprone-stringview-nullptr,-bugprone-undelegated-constructor,-clang-diagnostic-shadow,-misc-unused-using-decls,-modernize-use-nullptr,-modernize-use-override,-performance-unnecessary-value-param'
-# What clang itself sees for nothing, in place of the dear checks on null pointers and overriding.
+readonly EXPENSIVE_CHECKS='-clang-analyzer-*,-bugprone-reserved-identifier,-bugprone-stringview-nullptr,-bugprone-undelegated-constructor,-clang-diagnostic-shadow,-misc-unused-using-decls,-modernize-use-nullptr,-modernize-use-override,-performance-unnecessary-value-param'
+# What clang itself sees for nothing, in place of the expensive checks on null pointers and overriding.
 readonly LINT_WARNINGS='-Wno-unknown-warning-option -Wzero-as-null-pointer-constant -Wsuggest-override'
 
 fix=no all=no fast=no jobs=$(nproc)
@@ -156,7 +156,7 @@ prepare_tidy() {
 
 run_tidy() {
   local -a options=(--root . --build "$LINT_BUILD" --jobs "$jobs" --program "$tidy")
-  if [[ $all == yes ]]; then options+=(--each); else options+=("--checks=$DEAR_CHECKS"); fi
+  if [[ $all == yes ]]; then options+=(--each); else options+=("--checks=$EXPENSIVE_CHECKS"); fi
   if [[ $fix == yes && ${#paths[@]} -gt 0 ]]; then options+=(--fix); fi
   "$LINT_SCRIPTS/tidy.py" "${options[@]}" "${paths[@]}"
 }

@@ -134,9 +134,10 @@ void Simulator::ScatterLandmarks() {
     for (int k = 0; k < per_frame / 4; ++k) {
       const double z = random_.Uniform(options_.nearest_m, options_.farthest_m);
       const StereoCamera& camera = options_.camera;
-      const Eigen::Vector3d p_C(
-          (random_.Uniform(-0.2, 1.2) * camera.width - camera.cx_px) / camera.fx_px * z,
-          (random_.Uniform(-0.2, 1.2) * camera.height - camera.cy_px) / camera.fy_px * z, z);
+      const double v_px = random_.Uniform(-0.2, 1.2) * camera.height;
+      const double u_px = random_.Uniform(-0.2, 1.2) * camera.width;
+      const Eigen::Vector3d p_C((u_px - camera.cx_px) / camera.fx_px * z,
+                                (v_px - camera.cy_px) / camera.fy_px * z, z);
       sequence_.landmarks_W.push_back(T_W_C * p_C);
     }
   }

@@ -91,7 +91,8 @@ std::vector<RootState> SimulateRoot(const RootMotion& motion, int num_frames, do
                                     Random* random) {
   const double duration_s = num_frames * step_s;
   const double start_s = random->Uniform(0.25, 0.6) * duration_s;
-  const double turn_rad = random->Sign() * random->Uniform(M_PI / 3, 2 * M_PI / 3);
+  const double turn_sign = random->Sign();
+  const double turn_rad = turn_sign * random->Uniform(M_PI / 3, 2 * M_PI / 3);
   const double pause_s = random->Uniform(1.0, 2.0);
   const double keep = std::exp(-step_s / motion.velocity_memory_s);
   const double cruise_m_s = motion.velocity_W_m_s.norm();
@@ -150,8 +151,10 @@ MovingObject MakePerson(const std::vector<RootState>& root, double step_s, int n
 
 MovingObject MakeBox(const std::vector<RootState>& root, int num_points, Random* random) {
   MovingObject box;
-  const Eigen::Vector3d half_m(random->Uniform(0.5, 1.25), random->Uniform(0.5, 0.9),
-                               random->Uniform(0.5, 0.9));
+  Eigen::Vector3d half_m;
+  half_m.z() = random->Uniform(0.5, 0.9);
+  half_m.y() = random->Uniform(0.5, 0.9);
+  half_m.x() = random->Uniform(0.5, 1.25);
   std::vector<Eigen::Vector3d> shape;
   for (int i = 0; i < num_points; ++i) {
     Eigen::Vector3d point;

@@ -333,6 +333,9 @@ TEST(TrackBreaks, ATrackBreaksWhereNobodyCanGo) {
   const double longer_m = std::sqrt(30 * (2 * R + 0.04 * (4 + 2 * 0.36)));
   EXPECT_TRUE(Breaks({0, 0.2, 0.3}, 1, 0.999 * longer_m).empty());
   EXPECT_EQ(Breaks({0, 0.2, 0.3}, 1, 1.001 * longer_m), std::set<int>{1});
+  // The shortest step is the usual one, not the last.
+  EXPECT_TRUE(Breaks({0, 0.1, 0.3}, 1, 0.999 * limit_m).empty());
+  EXPECT_EQ(Breaks({0, 0.1, 0.3}, 1, 1.001 * limit_m), std::set<int>{1});
 }
 
 TEST(TrackBreaks, JustAfterAGapItMayHaveBeenBefore) {

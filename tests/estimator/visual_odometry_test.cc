@@ -368,7 +368,7 @@ PersonMeasurement Walker(int id, const Eigen::Vector3d& start_W, const Eigen::Ve
   person.id = HumanId{id};
   for (const int joint : kBodyJoints) {
     const Eigen::Vector3d offset(0.1 * (joint % 3 - 1), joint < 8 ? -0.5 : 0, 0.05 * (joint % 2));
-    const Eigen::Vector3d noise(normal(random), normal(random), normal(random));
+    const Eigen::Vector3d noise{normal(random), normal(random), normal(random)};
     person.joints.push_back({joint,
                              Truth(place).inverse() * (start_W + kFrameStep_s * k * v_W + offset) +
                                  sigma_m.cwiseProduct(noise),

@@ -377,6 +377,21 @@ TEST(WindowMap, ALandmarkGoesWhenAsManyOfItsObservationsWereWrongAsRight) {
   }
 }
 
+// Or it would be there again when somebody else gets its number.
+TEST(WindowMap, ARemovedLandmarkIsGoneFromKeyFramesToo) {
+  WindowMapOptions options = Small();
+  options.key_frame_interval = 1000;
+  options.max_eliminations = 1;
+  WindowMap map(options);
+  for (std::int64_t id = 0; id < 5; ++id) map.AddFrame(kCamera, Frame(id, {1, 2, 3}), Se3());
+  ASSERT_EQ(Kept(map), (Ids{0, 2, 3, 4}));
+  ASSERT_EQ(ThrowOut({2, 3}, &map).size(), 1U) << "of the key frame and the window's three";
+  for (const std::int64_t id : {0, 2, 3, 4}) {
+    EXPECT_EQ(map.frames().at({id}).observations.count({2}), 0U) << id;
+    EXPECT_EQ(map.frames().at({id}).observations.count({3}), 1U) << id;
+  }
+}
+
 TEST(WindowMap, ARemovedLandmarkIsNotListenedToForFiftyFrames) {
   WindowMapOptions options;
   options.max_rejections = 1;

@@ -127,9 +127,10 @@ TEST_F(LogSourceBooksTest, TheRangeHoldsBothItsEnds) {
   std::vector<Entry> entries{{'C', 7, 0}};
   for (std::int64_t seq = 0; seq < 6; ++seq) entries.push_back({'L', 7, seq});
   entries.push_back({'C', 7, 5});
+  entries.push_back({'R', 7, 4});  // late, from behind what is not wanted any more
   Write(entries);
   LogSource source(path_, 2, 4);
-  EXPECT_EQ(Frames(&source), "C7.0 | L7.2 | L7.3 | L7.4 ");
+  EXPECT_EQ(Frames(&source), "C7.0 | L7.2 | L7.3 | L7.4 R7.4 ");
   LogSource none(path_, 6);
   EXPECT_EQ(Frames(&none), "C7.0 | C7.5 ") << "calibrations from before are kept";
 }

@@ -91,6 +91,16 @@ TEST(InputWatchBooksTest, OnlyWhatIsSeenAndOnlySinceTheLastLookCountsForMasks) {
       << "once";
 }
 
+TEST(InputWatchBooksTest, AKeypointLiesOnAMaskByItsColumnAndRow) {
+  cv::Mat marked = cv::Mat::zeros(192, 320, CV_8UC1);
+  marked(cv::Rect(145, 55, 10, 10)) = cv::Scalar(255);
+  BodyKeypoints person;
+  person.fill({150, 60, 0.9});
+  InputWatch watch;
+  for (int k = 0; k < 10; ++k) watch.AddMask(marked, {person});
+  EXPECT_EQ(Joined(&watch), "");
+}
+
 // ---- People ----
 
 /// Two people, one beside the other, of a shape that nothing else has; all joints are seen.

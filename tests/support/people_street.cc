@@ -55,6 +55,7 @@ class Street {
     double heading_rad = 0, phase_rad = 0;
   };
 
+  /// One draw a statement, or several in braces: a call's arguments have no order.
   double Uniform(double from, double to) {
     return std::uniform_real_distribution<double>(from, to)(random_);
   }
@@ -69,7 +70,9 @@ class Street {
   void MakeScene() {
     for (int i = 0; i < options_.num_landmarks; ++i) {
       const double z = Uniform(5, 20);
-      landmarks_.emplace_back(Uniform(-0.6, 0.6) * z, Uniform(-0.4, 0.4) * z, z);
+      const double y = Uniform(-0.4, 0.4) * z;
+      const double x = Uniform(-0.6, 0.6) * z;
+      landmarks_.emplace_back(x, y, z);
     }
     for (int i = 0; i < options_.num_people; ++i) {
       const double heading_rad = Uniform(0, 2 * M_PI);

@@ -124,9 +124,9 @@ std::vector<PersonConstraint> Noisy(std::uint64_t seed) {
   std::normal_distribution<double> normal(0, 0.03);
   std::vector<PersonConstraint> people = Three(0.04, 0.08);
   for (PersonConstraint& person : people) {
-    const Eigen::Vector3d shared(normal(random), normal(random), normal(random));
+    const Eigen::Vector3d shared{normal(random), normal(random), normal(random)};
     for (Eigen::Vector3d& p_W : person.p_W)
-      p_W += shared + Eigen::Vector3d(normal(random), normal(random), normal(random));
+      p_W += shared + Eigen::Vector3d{normal(random), normal(random), normal(random)};
   }
   return people;
 }

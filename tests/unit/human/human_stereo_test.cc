@@ -93,9 +93,9 @@ TEST(Triangulator, CovarianceMatchesTheScatter) {
   int num = 0;
   const double sigma_px = KeypointNoise().Sigma(0.9, 770 * kPersonHeightM / 5);
   for (int trial = 0; trial < 300; ++trial) {
-    const JointObservations joints = TriangulatePerson(
-        {}, kTestCamera, {}, Detect(kTestCamera, person, false, sigma_px, &random),
-        Detect(kTestCamera, person, true, sigma_px, &random), 38.5);
+    const BodyKeypoints left = Detect(kTestCamera, person, false, sigma_px, &random);
+    const BodyKeypoints right = Detect(kTestCamera, person, true, sigma_px, &random);
+    const JointObservations joints = TriangulatePerson({}, kTestCamera, {}, left, right, 38.5);
     for (std::size_t joint = 0; joint < person.size(); ++joint) {
       if (!joints[joint]) continue;
       const Eigen::Vector3d error = joints[joint]->p_C - person[joint];
