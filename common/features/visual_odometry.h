@@ -10,12 +10,12 @@
 
 #include "common/features/camera_motion_filter.h"
 #include "common/features/feature_extractor.h"
+#include "common/features/feature_stereo_matcher.h"
 #include "common/features/landmark_judge.h"
 #include "common/features/landmark_matcher.h"
 #include "common/features/local_map.h"
 #include "common/features/people_pose.h"
 #include "common/features/pose_estimator.h"
-#include "common/features/stereo_matcher.h"
 #include "common/geometry/stereo_camera.h"
 #include "common/human/people_filter.h"
 

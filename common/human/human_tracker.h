@@ -9,7 +9,7 @@
 #include "common/human/human_track.h"
 #include "common/human/image_flow.h"
 #include "common/human/joint_triangulator.h"
-#include "common/human/stereo_matcher.h"
+#include "common/human/person_pairing.h"
 #include "common/util/ids.h"
 
 namespace airdos {
@@ -26,7 +26,7 @@ struct HumanTrackerOptions {
   double min_swap_gain = 20;  ///< squared errors, in sigmas, that exchanging sides must save
   double min_swap_gain_doubtful = 3;  ///< the same where left and right detection disagree on sides
   bool use_shift_vote = true;         ///< let the people tell how far the camera turned
-  StereoMatcherOptions matcher;
+  PersonPairingOptions matcher;
   JointTriangulatorOptions triangulator;
   ImageFlowOptions flow;
   HumanTrackOptions track;
@@ -66,7 +66,7 @@ class HumanTracker {
 
   void PredictTracks();
   std::vector<Observation> Observe(const StereoCamera& camera, const PeopleFrame& frame,
-                                   const StereoMatching& matching) const;
+                                   const PersonPairing& pairing) const;
   // For each observation the track it belongs to.
   std::vector<std::optional<int>> FindTracks(const std::vector<Observation>& observations) const;
   void Associate(const std::vector<Observation>& observations, bool is_stereo, double gate,

@@ -24,7 +24,7 @@ void ReadShared(ConfigReader* config, HumanTrackerOptions* options) {
   options->triangulator.max_depth_m = options->matcher.max_depth_m;
 }
 
-void ReadMatcher(ConfigReader* config, StereoMatcherOptions* matcher) {
+void ReadMatcher(ConfigReader* config, PersonPairingOptions* matcher) {
   config->Read("pairing.min_joints", &matcher->min_joints, 1, kNumJoints);
   config->Read("pairing.max_joint_cost", &matcher->max_joint_cost, 0.1, 1000);
   config->Read("pairing.gate", &matcher->gate, 0.01, 1000);

@@ -9,9 +9,9 @@
 
 #include "common/features/camera_motion_filter.h"
 #include "common/features/feature_extractor.h"
+#include "common/features/feature_stereo_matcher.h"
 #include "common/features/landmark_judge.h"
 #include "common/features/people_pose.h"
-#include "common/features/stereo_matcher.h"
 #include "tests/support/rendered_scene.h"
 
 // Limits of the front end's parts: just below and just above.
