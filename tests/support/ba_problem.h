@@ -12,7 +12,7 @@ namespace airdos {
 /// axes, one moving object with segments and one rigid motion over the track.
 struct BaProblem {
   BundleProblem problem;  ///< start values
-  BundleOptions options;  ///< sigmas of the file, no kernels, no elimination
+  BundleOptions options;  ///< sigmas of the file, no kernels, no rejection
 };
 
 /// Throws InputError naming file and line.

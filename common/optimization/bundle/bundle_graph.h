@@ -31,12 +31,12 @@ class BundleGraph {
 
   /// Drops the factors whose error at the current values is above its threshold and marks them in
   /// the problem. Returns how many.
-  int Eliminate();
+  int RejectOutliers();
   /// The block of the newest frame's pose; -1 where it is fixed or there is none.
   int newest_pose() const;
   /// Poses and motions into the problem.
   void WriteBack();
-  /// The counts of factors and of eliminated factors; the rest is left as it is.
+  /// The counts of factors and of rejected factors; the rest is left as it is.
   const BundleSummary& summary() const { return summary_; }
 
  private:
@@ -44,8 +44,8 @@ class BundleGraph {
   struct Factor {
     int index;  ///< in the graph
     Kind kind;
-    bool* is_eliminated;  ///< or null
-    int* num_eliminated;  ///< or null
+    bool* is_rejected;  ///< or null
+    int* num_rejected;  ///< or null
   };
   using JointState = BundleProblem::JointState;
   /// A joint and its block of unknowns.
@@ -102,7 +102,7 @@ class BundleGraph {
   template <class Observation>
   void AddReprojection(Observation* observation, bool has_right, int point, Kind kind);
   double Threshold(Kind kind) const;
-  void CountEliminated(const Factor& factor);
+  void CountRejected(const Factor& factor);
 
   const BundleOptions& options_;
   BundleProblem* problem_;
@@ -126,7 +126,7 @@ class BundleGraph {
 
 template <class Observation>
 void BundleGraph::AddReprojection(Observation* observation, bool has_right, int point, Kind kind) {
-  if (observation->is_eliminated) return;
+  if (observation->is_rejected) return;
   const StereoCamera* camera = &problem_->camera;
   std::unique_ptr<ceres::CostFunction> cost;
   if (observation->point) {
@@ -146,7 +146,7 @@ void BundleGraph::AddReprojection(Observation* observation, bool has_right, int 
   const ceres::LossFunction* loss = kind == Kind::kLandmark ? &static_loss_ : &dynamic_loss_;
   const int pose = pose_blocks_[static_cast<std::size_t>(observation->frame)];
   const int index = graph_.AddFactor(std::move(cost), loss, pose, point);
-  factors_.push_back({index, kind, &observation->is_eliminated, nullptr});
+  factors_.push_back({index, kind, &observation->is_rejected, nullptr});
 }
 
 }  // namespace airdos

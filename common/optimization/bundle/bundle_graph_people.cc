@@ -136,7 +136,7 @@ void BundleGraph::AddRigidity(const std::vector<Sighting>& sightings, BundleProb
       const int index =
           graph_.AddFactor(std::make_unique<RigidityFactor>(options_.rigidity_sigma_m),
                            &dynamic_loss_, a.block, b.block, length);
-      factors_.push_back({index, Kind::kRigidity, nullptr, &human->num_rigidity_eliminated});
+      factors_.push_back({index, Kind::kRigidity, nullptr, &human->num_rigidity_rejected});
       ++num_factors;
     }
     summary_.num_rigidity += num_factors;
@@ -154,7 +154,7 @@ void BundleGraph::AddMotionFactor(std::unique_ptr<ceres::CostFunction> cost, con
                                   int motion, BundleProblem::Human* human) {
   const int index = graph_.AddFactor(std::move(cost), &dynamic_loss_, pair.first.block,
                                      pair.second.block, motion);
-  factors_.push_back({index, Kind::kMotion, nullptr, &human->num_motion_eliminated});
+  factors_.push_back({index, Kind::kMotion, nullptr, &human->num_motion_rejected});
   ++summary_.num_motion;
 }
 
@@ -290,7 +290,7 @@ MotionNoise BundleGraph::NoiseOf(const BundleProblem::Human& human) const {
 }
 
 /// Two points leave the rotation about the line through them free; three or more may still lie
-/// nearly on a line, and elimination may take some away, so that these are damped ten times less.
+/// nearly on a line, and rejection may take some away, so that these are damped ten times less.
 void BundleGraph::AddRotationDamping(const std::vector<const JointState*>& points, int motion) {
   const double weight = 1 / options_.free_rotation_sigma_rad;
   Eigen::Matrix3d sqrt_information = 0.1 * weight * Eigen::Matrix3d::Identity();

@@ -57,7 +57,7 @@ class HumanTracks {
   void Absorb(const BundleProblem& problem);
 
   /// Everyone seen in `frame` (one of frames()), with `T_W_C` as its camera and the motions of
-  /// `problem`. Joints whose reprojection was eliminated are left out.
+  /// `problem`. Joints whose reprojection was rejected are left out.
   std::vector<HumanState> Describe(FrameId frame, const Se3& T_W_C,
                                    const BundleProblem& problem) const;
   /// The frames in memory, oldest first.
@@ -71,7 +71,7 @@ class HumanTracks {
     Eigen::Matrix3d covariance_px2;
     Eigen::Vector3d p_C;           ///< as triangulated, then as optimized
     Eigen::Vector3d p_C_measured;  ///< as triangulated
-    bool is_eliminated = false;    ///< by the last adjustment
+    bool is_rejected = false;      ///< by the last adjustment
   };
   struct Person {
     std::map<FrameId, std::map<int, Joint>> sightings;  // of the frames in memory

@@ -33,7 +33,7 @@ class WindowMap {
     Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();
     bool has_right = true;
     double sigma_px = 1;
-    int num_eliminations = 0;  ///< adjustments in a row that threw it out
+    int num_rejections = 0;  ///< adjustments in a row that threw it out
   };
   struct Frame {
     double time_s = 0;
@@ -61,7 +61,7 @@ class WindowMap {
   /// fixed while it is in the window; without any fixed frame the oldest of the window is.
   BundleProblem BuildProblem(const StereoCamera& camera) const;
 
-  /// Takes poses, landmarks and eliminated observations back. Returns the landmarks that turned out
+  /// Takes poses, landmarks and rejected observations back. Returns the landmarks that turned out
   /// to be bad and are gone, sorted.
   std::vector<LandmarkId> Absorb(const BundleProblem& problem);
 

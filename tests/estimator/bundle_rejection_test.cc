@@ -14,7 +14,7 @@ const StereoCamera kCamera{640, 480, 500, 470, 310, 250, 0.3};
 constexpr double kNone = 1e9;
 constexpr double kExact = 1e-6;
 
-/// No kind is eliminated.
+/// No kind is rejected.
 BundleOptions Options() {
   BundleOptions options;
   options.max_iterations = 60;
@@ -59,8 +59,8 @@ struct Counts {
 };
 
 Counts CountsOf(const BundleSummary& summary) {
-  return {summary.num_reprojection_eliminated, summary.num_rigidity_eliminated,
-          summary.num_motion_eliminated};
+  return {summary.num_reprojection_rejected, summary.num_rigidity_rejected,
+          summary.num_motion_rejected};
 }
 
 constexpr Counts kNobody = {0, 0, 0};
@@ -78,16 +78,16 @@ BundleProblem WrongLandmark(double sigmas) {
   return problem;
 }
 
-TEST(BundleElimination, ALandmark) {
+TEST(BundleRejection, ALandmark) {
   BundleOptions options = Options();
   options.eliminate_static = 4;
   BundleProblem problem = WrongLandmark(3.99);
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
-  EXPECT_FALSE(problem.observations[1].is_eliminated);
+  EXPECT_FALSE(problem.observations[1].is_rejected);
   problem = WrongLandmark(4.01);
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), (Counts{1, 0, 0}));
-  EXPECT_FALSE(problem.observations[0].is_eliminated);
-  EXPECT_TRUE(problem.observations[1].is_eliminated);
+  EXPECT_FALSE(problem.observations[0].is_rejected);
+  EXPECT_TRUE(problem.observations[1].is_rejected);
   problem = WrongLandmark(4.01);
   options = Options();
   options.eliminate_joint = options.eliminate_rigidity = options.eliminate_motion = 4;
@@ -105,7 +105,7 @@ BundleProblem WrongJoint(double sigmas) {
   return problem;
 }
 
-TEST(BundleElimination, AJoint) {
+TEST(BundleRejection, AJoint) {
   BundleOptions options = Options();
   options.rigidity_sigma_m = options.segment_length_sigma_m = kExact;
   options.eliminate_joint = 4;
@@ -113,9 +113,9 @@ TEST(BundleElimination, AJoint) {
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
   problem = WrongJoint(4.01);
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), (Counts{1, 0, 0}));
-  EXPECT_FALSE(problem.humans[0].joints[0].is_eliminated);
-  EXPECT_TRUE(problem.humans[0].joints[1].is_eliminated);
-  EXPECT_EQ(problem.humans[0].num_rigidity_eliminated, 0);
+  EXPECT_FALSE(problem.humans[0].joints[0].is_rejected);
+  EXPECT_TRUE(problem.humans[0].joints[1].is_rejected);
+  EXPECT_EQ(problem.humans[0].num_rigidity_rejected, 0);
   options.eliminate_joint = kNone;
   options.eliminate_static = options.eliminate_rigidity = options.eliminate_motion = 4;
   problem = WrongJoint(4.01);
@@ -135,7 +135,7 @@ BundleProblem WrongLength(double sigmas) {
   return problem;
 }
 
-TEST(BundleElimination, ALength) {
+TEST(BundleRejection, ALength) {
   BundleOptions options = Options();
   options.segment_length_sigma_m = kExact;
   options.eliminate_rigidity = 4;
@@ -143,12 +143,12 @@ TEST(BundleElimination, ALength) {
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
   problem = WrongLength(4.01);
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), (Counts{0, 1, 0}));
-  EXPECT_EQ(problem.humans[0].num_rigidity_eliminated, 0);
-  EXPECT_EQ(problem.humans[1].num_rigidity_eliminated, 1);
-  EXPECT_EQ(problem.humans[1].num_motion_eliminated, 0);
+  EXPECT_EQ(problem.humans[0].num_rigidity_rejected, 0);
+  EXPECT_EQ(problem.humans[1].num_rigidity_rejected, 1);
+  EXPECT_EQ(problem.humans[1].num_motion_rejected, 0);
   // Counted anew each time.
   SolveBundle(options, &problem);
-  EXPECT_EQ(problem.humans[1].num_rigidity_eliminated, 1);
+  EXPECT_EQ(problem.humans[1].num_rigidity_rejected, 1);
   options.eliminate_rigidity = kNone;
   options.eliminate_static = options.eliminate_joint = options.eliminate_motion = 4;
   problem = WrongLength(4.01);
@@ -168,7 +168,7 @@ BundleProblem WrongStep(double sigmas, double joint_sigma_m = kExact) {
   return problem;
 }
 
-TEST(BundleElimination, AMotion) {
+TEST(BundleRejection, AMotion) {
   BundleOptions options = Options();
   options.eliminate_motion = 4;
   BundleProblem problem = WrongStep(3.99);
@@ -179,8 +179,8 @@ TEST(BundleElimination, AMotion) {
   problem = WrongStep(4.01);
   summary = SolveBundle(options, &problem);
   EXPECT_EQ(CountsOf(summary), (Counts{0, 0, 1}));
-  EXPECT_EQ(problem.humans[0].num_motion_eliminated, 1);
-  EXPECT_EQ(problem.humans[0].num_rigidity_eliminated, 0);
+  EXPECT_EQ(problem.humans[0].num_motion_rejected, 1);
+  EXPECT_EQ(problem.humans[0].num_rigidity_rejected, 0);
   EXPECT_NEAR(problem.humans[0].motions[0].motion_W.translation.x(), 0, 1e-5) << "solved again";
   EXPECT_NEAR(summary.initial_cost, 0.5 * (4.01 * 4.01 + 3 * std::pow(4.01 / 3, 2)), 1e-6);
   EXPECT_NEAR(summary.final_cost, 0, 1e-6);
@@ -205,7 +205,7 @@ TEST(BundleElimination, AMotion) {
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
 }
 
-TEST(BundleElimination, TheKernelKeepsOneWildJointFromCarryingTheRest) {
+TEST(BundleRejection, TheKernelKeepsOneWildJointFromCarryingTheRest) {
   BundleOptions options = Options();
   options.max_iterations_after_elimination = 0;
   BundleProblem problem = WrongStep(30);  // 2 m
@@ -215,7 +215,7 @@ TEST(BundleElimination, TheKernelKeepsOneWildJointFromCarryingTheRest) {
   EXPECT_NEAR(problem.humans[0].motions[0].motion_W.translation.x(), 0.05 * 2 / 3, 1e-4);
 }
 
-TEST(BundleElimination, WhatOnlyFixedFramesSeeStaysWhereItIs) {
+TEST(BundleRejection, WhatOnlyFixedFramesSeeStaysWhereItIs) {
   BundleProblem problem = Empty();
   problem.frames.push_back({FrameId{5}, 0.2, {ExpSo3({0.1, 0.1, 0.3}), {1.4, 2, 3}}, false});
   const Se3 start = problem.frames[2].T_W_C, fixed = problem.frames[1].T_W_C;
@@ -250,7 +250,7 @@ TEST(BundleElimination, WhatOnlyFixedFramesSeeStaysWhereItIs) {
   EXPECT_FALSE(SolveBundle(options, &problem).newest_covariance);
 }
 
-TEST(BundleElimination, SomebodyOfWhomNothingIsSeenDoesNotCount) {
+TEST(BundleRejection, SomebodyOfWhomNothingIsSeenDoesNotCount) {
   BundleProblem problem = WrongStep(0);
   problem.humans.resize(3);
   const BundleSummary summary = SolveBundle(Options(), &problem);
