@@ -35,7 +35,7 @@ void AddPerson(const PersonConstraint& person, const Se3& T_W_C, Matrix6d* H, Ve
 
 PeoplePose EstimatePoseFromPeople(const PosePrior& prior,
                                   const std::vector<PersonConstraint>& people) {
-  PeoplePose pose{prior, Matrix6d::Zero()};
+  PeoplePose pose{prior, Matrix6d::Zero(), static_cast<int>(people.size())};
   if (people.empty()) return pose;
   const Matrix6d prior_information = prior.covariance.inverse();
   Se3& T_W_C = pose.prior.T_W_C;
@@ -44,7 +44,7 @@ PeoplePose EstimatePoseFromPeople(const PosePrior& prior,
     Vector6d b = -prior_information * Boxminus(T_W_C, prior.T_W_C);
     for (const PersonConstraint& person : people) AddPerson(person, T_W_C, &pose.information, &b);
     const Vector6d delta = (prior_information + pose.information).ldlt().solve(b);
-    if (!delta.allFinite()) return {prior, Matrix6d::Zero()};
+    if (!delta.allFinite()) return {prior, Matrix6d::Zero(), pose.num_people};
     T_W_C = Boxplus(T_W_C, delta);
     if (delta.norm() < kConverged) break;
   }

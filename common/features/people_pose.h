@@ -11,6 +11,7 @@ namespace airdos {
 struct PeoplePose {
   PosePrior prior;                          ///< what the prior and the people say together
   Matrix6d information = Matrix6d::Zero();  ///< of the tangent, from the people alone
+  int num_people = 0;                       ///< who were asked
 };
 
 /// The camera's pose from people: `prior` corrected by where the camera sees them and where they
