@@ -10,7 +10,7 @@
 
 #include "common/features/visual_odometry.h"
 #include "processes/frontend/frontend_node.h"
-#include "tests/node/frontend_messages.h"
+#include "tests/node/frontend_walk.h"
 
 namespace airdos {
 namespace {
