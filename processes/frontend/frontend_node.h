@@ -75,7 +75,6 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   /// Frame whose update must be there before the next frame starts.
   std::optional<std::int64_t> RequiredUpdate() const;
   void ApplyUpdates();
-  static std::vector<PersonMeasurement> People(const FrontendInputs& inputs);
   bool Fits(const std::optional<cv::Mat>& image, const char* channel, const std::string& reason);
   /// Where people are, from masks, or else from keypoints; empty if nothing says.
   cv::Mat Mask(const FrontendInputs& inputs);
