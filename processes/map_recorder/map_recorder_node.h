@@ -15,6 +15,7 @@
 #include "common/config/config_reader.h"
 #include "common/map/four_d_map.h"
 #include "common/util/output_folder.h"
+#include "processes/map_recorder/session_files.h"
 #include "processes/node/frame_node.h"
 
 namespace airdos {
@@ -61,8 +62,7 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   static constexpr std::size_t kMaxGroundTruth = 1000000;
   static constexpr std::size_t kGroundTruthPerNote = 10;
   static constexpr std::int64_t kGroundTruthLag = 1000;
-  /// Each session has a folder: in one more nothing is recorded.
-  static constexpr int kMaxSessions = 1000;
+  static constexpr int kMaxSessions = SessionFiles::kMaxSessions;
   /// Calibrations and ground truth of so many sessions wait for their first frame.
   static constexpr std::size_t kMaxSessionsAhead = 100;
 
@@ -77,10 +77,10 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   void Finish() override;
 
   /// Of the session in work; empty before the first frame.
-  const std::string& session_directory() const { return session_directory_; }
+  const std::string& session_directory() const { return files_.session_directory(); }
 
   /// For what else of this run is to lie in the folder.
-  OutputFolder* results() { return &results_; }
+  OutputFolder* results() { return files_.results(); }
 
  protected:
   void StartSession(const Header& header) override;
@@ -97,35 +97,23 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
 
   std::string AddCalibration(const stereo_calibration_t& message);
   std::string AddGroundTruth(const pose_t& message);
-  /// Goes on with the map of a recorder that was killed; false if there is none.
-  bool Resume(const Header& header);
+  /// Takes what lay beside the map of a recorder that was killed.
+  void TakeNotes(const FourDMap& notes);
+  /// Of the session in work, as far as it is known.
+  std::optional<StereoCamera> Camera() const;
   /// Writes new ground truth of the session in work beside the map.
   void NoteGroundTruth();
   void TakeOldGroundTruth(std::int64_t seq);
   void SetGroundTruth(const std::pair<const std::int64_t, GroundTruth>& pose);
   /// Warns where times do not go on.
   void WatchTime(const Header& header);
-  void Append(const MapChunk& chunk);
   void WriteChunk();
   void CloseSession();
-  /// Takes the folder over from an earlier run.
-  void ReplaceEarlierResults();
-  /// Opens the map of the session in work, at its end or where a kill left it.
-  void OpenMap(std::int64_t num_bytes);
-  /// Throws InputError where the map, as it was read, is not what was recorded.
-  void CompareWithRecorded(const FourDMap& map, const MapFileSummary& summary,
-                           std::int64_t num_bytes) const;
-  std::string PathOf(const std::string& name) const { return results_.PathOf(prefix_ + name); }
 
   MapRecorderOptions options_;
-  OutputFolder results_;
-  std::string prefix_;  // of the session's files in the folder: "" or "session_2/"
-  std::string session_directory_;
-  int num_sessions_ = 0;
+  SessionFiles files_;
   std::int64_t session_ = 0;
-  std::unique_ptr<MapFileWriter> file_;  // none before the first frame and after a failure
-  std::string failure_;                  // why nothing more could be written; empty if all was
-  std::optional<Header> newest_pose_;    // in time, of the session
+  std::optional<Header> newest_pose_;  // in time, of the session
   bool is_time_said_ = false;
   MapDelta changes_;  // of the open chunk
   int num_frames_in_chunk_ = 0;
@@ -135,8 +123,7 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   std::map<std::int64_t, std::map<std::int64_t, GroundTruth>> ground_truth_;
   std::map<std::int64_t, std::map<std::int64_t, StereoCamera>> cameras_;
   std::size_t num_ground_truth_ = 0;
-  std::unique_ptr<MapFileWriter> notes_;  // map.airdos.open
-  std::set<std::int64_t> not_noted_;      // ground truth that is not in it
+  std::set<std::int64_t> not_noted_;  // ground truth that does not lie beside the map yet
 };
 
 /// Reads launch_scripts/config/map_recorder.yaml's keys; the caller calls Finish() of the reader.
