@@ -11,13 +11,13 @@
 namespace airdos {
 namespace {
 
-/// A landmark that should be in view, and the corner that was taken for it or null.
+/// A landmark that should be visible, and the corner it was matched to (or null).
 struct Candidate {
   VisibleLandmark visible;
   const Feature* feature;
 };
 
-/// Off people; those that were matched first, then the longest known.
+/// The landmarks off people: matched ones first, then by how often they were seen.
 std::vector<Candidate> FindCandidates(const StereoFrame& frame, const LocalMap& map,
                                       const Se3& T_W_C, const std::vector<LandmarkMatch>& matches) {
   std::map<LandmarkId, const Feature*> feature_of;
@@ -40,7 +40,7 @@ std::vector<Candidate> FindCandidates(const StereoFrame& frame, const LocalMap& 
   return candidates;
 }
 
-/// Where the landmark's patch is in the left image, px of the landmark's level there.
+/// Position of the landmark's patch in the left image, in px of its level there.
 std::optional<Patch::Alignment> AlignPatch(const ImagePyramid& left, const VisibleLandmark& visible,
                                            const Eigen::Vector2d& start_px) {
   constexpr double kMaxShift_px = 4;  // of the level

@@ -21,30 +21,30 @@ struct LandmarkSighting {
   double sigma_px = 1;                               ///< of each of the three
 };
 
-/// What a frame shows of the local map.
+/// What one frame shows of the local map.
 struct SightedLandmarks {
   std::vector<LandmarkSighting> sightings;  ///< ordered by id
-  std::vector<LandmarkId> looked_for;       ///< found or not, in the order they were looked for
+  std::vector<LandmarkId> looked_for;       ///< found or not, in the order of the search
 };
 
-/// At most so many observed landmarks in each cell of observation_cell_px.
+/// Limit on the observed landmarks in each cell of observation_cell_px.
 inline constexpr int kMaxObservationsPerCell = 2;
-/// So many landmarks or corners of a cell are looked at to get there.
+/// Limit on the landmarks or corners that are tried in a cell to reach it.
 inline constexpr int kMaxTriedPerCell = 4;
 
-/// Finds the landmarks that should be in view from T_W_C to a fraction of a pixel: the patch of
-/// each, from the image in which it was seen first, is aligned with the left image from the feature
-/// in `matches` or, without one, from its projection, and then along the row with the right image.
-/// A match whose patch does not fit stays where its corner is, with the larger sigma of a corner; a
-/// landmark with neither is not seen. None is seen on people. Where landmarks crowd, those that
-/// were matched come first, then those seen most often, until kMaxTriedPerCell of a cell were
-/// tried.
+/// Finds the landmarks that should be visible from T_W_C, to a fraction of a pixel. The patch of
+/// each, taken from its reference image, is aligned with the left image, starting from its feature
+/// in `matches` or else from its projection, and then with the right image along the row. If the
+/// patch does not fit, a matched landmark is seen at its corner, with the larger sigma of a corner,
+/// and an unmatched one is not seen. Nothing is seen on people. In crowded cells matched landmarks
+/// are tried first, then those seen most often, at most kMaxTriedPerCell of them.
 SightedLandmarks SightLandmarks(const VisualOdometryOptions& options, const StereoFrame& frame,
                                 const LocalMap& map, const Se3& T_W_C,
                                 const std::vector<LandmarkMatch>& matches);
 
-/// At most max_observations of them, spread over the image; those seen most often first, because
-/// they tie the new frames to the old ones. Each must be in the map. Ordered by id.
+/// At most max_observations of the sightings, spread over the image and ordered by id. Landmarks
+/// seen most often take precedence, because they tie new frames to old ones. Each must be in the
+/// map.
 std::vector<LandmarkSighting> KeepSpread(const VisualOdometryOptions& options, const LocalMap& map,
                                          std::vector<LandmarkSighting> sightings);
 

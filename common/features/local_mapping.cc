@@ -10,7 +10,7 @@
 namespace airdos {
 namespace {
 
-/// Known by how the feature at p_C looks in this frame; its covariance and trust are left out.
+/// With this frame as its reference; covariance and trust are left to the caller.
 LocalLandmark MakeLandmark(const StereoFrame& frame, const Feature& feature, const Se3& T_W_C,
                            const Eigen::Vector3d& p_C) {
   LocalLandmark landmark;

@@ -9,7 +9,7 @@
 namespace airdos {
 namespace {
 
-constexpr std::size_t kRecentFrames = 3;  // landmarks of so many are searched in the whole image
+constexpr std::size_t kRecentFrames = 3;  // whose landmarks are searched in the whole image
 
 /// Each frame that sees a landmark makes it better known. Where many are seen at once their errors
 /// cancel, and the optimizer soon knows them better than this does.
@@ -22,8 +22,8 @@ Eigen::Matrix3d CovarianceOf(const LocalLandmark& landmark, std::size_t num_seen
 /// In an estimate of the pose. Less than the trust: the doubtful ones err together.
 double WeightOf(double relative_trust) { return relative_trust * relative_trust; }
 
-/// Those last seen in the last frames that saw any, however long ago: after a blackout they are all
-/// there is.
+/// The landmarks last seen in the newest frames that saw any, however long ago: after a blackout
+/// there are no others.
 std::vector<std::pair<LandmarkId, const LocalLandmark*>> RecentLandmarks(const LocalMap& map) {
   std::set<FrameId> frames;
   for (const auto& [id, landmark] : map.landmarks()) frames.insert(landmark.last_seen);

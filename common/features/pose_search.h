@@ -15,47 +15,47 @@
 
 namespace airdos {
 
-/// Where the camera may be, and which corners of the left image are which landmarks if it is there.
+/// A possible camera pose, and the matches of landmarks with corners of the left image under it.
 struct PoseHypothesis {
   Se3 T_W_C;
-  std::vector<LandmarkMatch> matches;  ///< that agree with it
+  std::vector<LandmarkMatch> matches;  ///< inliers only
   int num_inliers = 0;
 };
 
-/// A hypothesis measured to a fraction of a pixel.
+/// A hypothesis refined by measuring its landmarks to a fraction of a pixel.
 struct MeasuredPose {
   PoseHypothesis hypothesis;
-  SightedLandmarks seen;  ///< looked_for is empty where nothing supports the hypothesis
+  SightedLandmarks seen;  ///< looked_for is empty if nothing supports the hypothesis
   PoseEstimate estimate;  ///< from seen.sightings, in their order
   double score = 0;       ///< see ScorePose()
 };
 
-/// Searches the pose of one frame against the local map. There are two hypotheses: the predicted
-/// pose, corrected by the landmarks found around their projections; and one from descriptors
-/// matched anywhere in the image (AP3P in RANSAC), which needs no prediction. Where they differ
-/// both are measured, and the one is kept that more trusted landmarks agree with. All poses are
-/// T_W_C, W as the map has it. Nothing is changed. What it is given must outlive it.
+/// Searches for the pose of one frame against the local map. There are two hypotheses: the
+/// predicted pose, corrected by landmarks found near their projections; and one from descriptors
+/// matched anywhere in the image (AP3P in RANSAC), which needs no prediction. If they differ, both
+/// are measured, and the one supported by more trusted landmarks wins. All poses are T_W_C, with W
+/// as the map has it. Frame, map and judge are only read, and must outlive the search.
 class PoseSearch {
  public:
   PoseSearch(const VisualOdometryOptions& options, const StereoFrame& frame, const LocalMap& map,
              const LandmarkJudge& judge)
       : options_(options), frame_(frame), map_(map), judge_(judge) {}
 
-  /// The better of the two. Where rich_observations agree with the first the second is spared;
-  /// where nothing is found its pose is the prior's.
+  /// The better of the two hypotheses. If at least rich_observations support the first, the second
+  /// is not tried. If nothing is found, the pose is that of the prior.
   MeasuredPose FindBest(const PosePrior& prior) const;
 
-  /// The pose that the sightings and the prior say together, each landmark weighted by its trust.
+  /// The pose from sightings and prior, each landmark weighted by its trust.
   PoseEstimate Estimate(const std::vector<LandmarkSighting>& sightings, const Se3& start,
                         const PosePrior& prior) const;
 
  private:
-  /// Matches around the projections from `start`, estimates, and again in narrower circles.
+  /// Matches near the projections from `start` and estimates the pose, in ever narrower circles.
   PoseHypothesis TrackFrom(const Se3& start, const ProjectionSearch& first,
                            const std::optional<PosePrior>& prior) const;
-  /// From descriptors alone, against the landmarks of the last frames that saw any.
+  /// From descriptors alone, against the landmarks last seen in the newest frames that saw any.
   std::optional<Se3> Relocate() const;
-  /// Finds the landmarks of the hypothesis to a fraction of a pixel; the pose from them.
+  /// Measures the landmarks of the hypothesis, and estimates the pose from them.
   MeasuredPose Measure(PoseHypothesis hypothesis, const PosePrior& prior) const;
   PoseEstimate EstimateFromMatches(const std::vector<LandmarkMatch>& matches, const Se3& start,
                                    const std::optional<PosePrior>& prior) const;

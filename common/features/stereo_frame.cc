@@ -14,7 +14,7 @@ const StereoImagePair& Checked(const StereoCamera& camera, const StereoImagePair
   return images;
 }
 
-/// Of the whole image: what moves in the right one finds no partner.
+/// Without a mask: there is none for the right image. What moves there finds no partner.
 std::vector<Feature> ExtractAll(const FeatureExtractor& extractor, const ImagePyramid& pyramid) {
   int num_masked = 0;
   return extractor.Extract(pyramid, cv::Mat(), &num_masked);

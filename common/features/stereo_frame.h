@@ -27,28 +27,29 @@ struct StereoImagePair {
   std::vector<PersonMeasurement> people;  ///< in view; empty where people are not to be used
 };
 
-/// One frame as the odometry looks at it, computed once: both images at several scales, the corners
-/// of the static scene in the left one and all corners of the right one, in px of level 0, and what
-/// finds them. Camera and images must outlive it.
+/// What the odometry needs of one frame, computed once: the pyramids of both images, their features
+/// (in the left image only those off people), and the structures for matching them. Coordinates are
+/// in px of level 0. Camera and images must outlive it.
 class StereoFrame {
  public:
-  /// Images of another size than the camera's are a programmer's error.
+  /// The images must have the size of the camera (checked).
   StereoFrame(const StereoCamera& camera, const StereoImagePair& images,
               const FeatureExtractor& extractor, const FeatureStereoMatcherOptions& stereo);
-  // The matcher refers to the members beside it.
+  // The matcher refers to other members.
   StereoFrame(const StereoFrame&) = delete;
   StereoFrame& operator=(const StereoFrame&) = delete;
 
   FrameId id() const { return images_.id; }
   const StereoCamera& camera() const { return camera_; }
-  /// Shared: landmarks keep the image in which they were seen first.
+  /// Shared, because landmarks keep the image in which they were first seen.
   const std::shared_ptr<const ImagePyramid>& left() const { return left_; }
   const std::vector<Feature>& left_features() const { return left_features_; }
   const FeatureGrid& grid() const { return grid_; }  ///< of left_features()
   const FeatureStereoMatcher& stereo() const { return stereo_; }
-  /// Corners that were left out because they lie on people.
+  /// Number of corners left out because they lie on people.
   int num_masked() const { return num_masked_; }
-  /// Whether the pixel of the left image, or the one at the border next to it, lies on people.
+  /// Whether this pixel of the left image lies on people. Outside the image, the nearest pixel
+  /// counts.
   bool IsMasked(const Eigen::Vector2d& uv_px) const;
 
  private:

@@ -21,7 +21,7 @@ namespace airdos {
 
 enum class TrackingState { kInitializing, kTracking, kWeak, kCoasting };
 
-/// What the odometry says of one frame.
+/// The result of one frame.
 struct OdometryFrame {
   TrackingState state = TrackingState::kInitializing;
   Se3 T_W_C;  ///< W as the corrections so far have it
@@ -35,13 +35,13 @@ struct OdometryFrame {
   std::vector<LandmarkSighting> sightings;  ///< ordered by id
 };
 
-/// Stereo odometry against a local map. Where the camera is comes from a search (pose_search.h)
-/// around the prediction of constant velocity; what moves is not trusted: see LandmarkJudge. It
-/// never resets: without support it coasts on the prediction and goes on matching the whole map. W
-/// is the first left camera.
+/// Stereo odometry against a local map. The pose is searched for around a constant-velocity
+/// prediction (pose_search.h); what moves is not trusted (landmark_judge.h). It never resets:
+/// without support it coasts on the prediction and keeps matching the whole map. W is the first
+/// left camera.
 ///
-/// Where static landmarks are few, people help: each moves on with the velocity it had, and where
-/// the camera sees them says where the camera is, as far as they can be relied on.
+/// Where static landmarks are few, people help: each is predicted to keep its velocity, and where
+/// the camera sees them constrains its pose, as far as they can be relied on.
 class VisualOdometry {
  public:
   /// Landmarks are numbered from `first_id` on.
@@ -64,36 +64,36 @@ class VisualOdometry {
     FrameId id;
     double time_s;
   };
-  /// Where the camera should be by its motion so far.
+  /// Where the camera should be, by its motion so far.
   struct Prediction {
     double step_s;  ///< from the last frame
     PosePrior prior;
   };
 
-  // The steps of Process(), in their order; each fills in its part of the result.
+  // The steps of Process(), in order; each fills in its part of the result.
 
-  /// What a stereo match must fulfil in this frame: more where landmarks abound.
+  /// The criteria of a stereo match in this frame: stricter where landmarks abound.
   FeatureStereoMatcherOptions StereoOptions() const;
-  /// Camera and people go on with the velocities they had.
+  /// Camera and people keep their velocities.
   Prediction PredictMotion(double time_s, OdometryFrame* result);
-  /// The prior, corrected by people where static landmarks were few in the last frame.
+  /// The prior, corrected by people if static landmarks were few in the last frame.
   PeoplePose CorrectByPeople(const std::vector<PersonMeasurement>& people,
                              const PosePrior& prior) const;
-  /// The measured pose. Where static landmarks turn out to be many people are left out again: the
-  /// pose is estimated without them, and their information is gone.
+  /// The measured pose. If static landmarks turn out to be many, it is estimated again without
+  /// people, and their information is dropped.
   PoseEstimate EstimateFinalPose(const PoseSearch& search, const MeasuredPose& measured,
                                  const PosePrior& prior, PeoplePose* people) const;
-  /// Takes the pose and the sightings that agree with it; where too few do, or the prior does not
-  /// allow it, the prior's pose and no sightings.
+  /// Accepts the pose and the sightings that agree with it. If too few do, or the prior contradicts
+  /// it, coasts: the prior's pose and no sightings.
   void AcceptOrCoast(const std::vector<LandmarkSighting>& sightings, const PosePrior& prior,
                      PoseEstimate* estimate, OdometryFrame* result);
-  /// `information` of the frame's own measurements, without the prior.
+  /// `information` is that of the frame's own measurements, without the prior.
   void UpdateMotion(const Prediction& predicted, const Matrix6d& information,
                     const OdometryFrame& result);
-  /// Chains the motion from the last frame on to T_O_C.
+  /// Adds the motion since the last frame to T_O_C.
   void Remember(FrameId id, double time_s, OdometryFrame* result);
-  /// Judges which landmarks stand still, thins out the sightings, keeps up the landmarks that were
-  /// seen, makes new ones where there is room, and culls.
+  /// Judges which landmarks are static, thins out the sightings, updates the landmarks seen,
+  /// creates new ones where there is room, and culls.
   void UpdateMap(const StereoFrame& frame, const std::vector<LandmarkId>& looked_for,
                  OdometryFrame* result);
 

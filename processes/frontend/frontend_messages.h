@@ -16,17 +16,17 @@ namespace airdos {
 
 // Between the frontend's messages and the types of common/features.
 
-/// `odometry_start_seq` is the number of the first image of O.
+/// `odometry_start_seq` is the image number of the first frame of O.
 static_features_t ToStaticFeatures(const Header& header, std::int64_t odometry_start_seq,
                                    const OdometryFrame& frame);
 
-/// Of a frame that has no pose, and in which nothing was looked at.
+/// For a frame without a pose, in which nothing was observed.
 static_features_t UnknownStaticFeatures(const Header& header, std::int64_t odometry_start_seq);
 
-/// Everybody of the message; joints that are not finite, or whose covariance is none, are left out.
+/// All people of the message. Joints that are not finite or have no valid covariance are left out.
 std::vector<PersonMeasurement> ToPersonMeasurements(const human_observations_t& message);
 
-/// Adds what one part of a MAP_UPDATE says to the rest; `newest` is the caller's.
+/// Adds one part of a MAP_UPDATE; `newest` is left to the caller.
 void AddTo(const map_update_t& part, MapCorrection* correction);
 
 }  // namespace airdos

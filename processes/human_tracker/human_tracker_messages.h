@@ -10,7 +10,8 @@ namespace airdos {
 // Between the human tracker's messages and the types of common/human. Keypoints are converted by
 // processes/node/message/keypoint_messages.h.
 
-/// What was found in `frame`. The row of a joint is one: that of both detections together.
+/// What was found in `frame`. A joint has the same row in both images: that of both detections
+/// together.
 human_observations_t ToHumanObservations(const Header& header, const PeopleFrame& frame,
                                          const TrackedFrame& tracked);
 

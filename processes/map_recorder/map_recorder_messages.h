@@ -12,8 +12,8 @@ namespace airdos {
 /// The live pose of a frame; its status must not be STATUS_INVALID.
 MapFrame ToMapFrame(const state_estimate_t& message);
 
-/// Adds what one part of a MAP_UPDATE says: refined poses, landmarks, people. Landmarks that are
-/// told again are left out: they are nothing new.
+/// Adds one part of a MAP_UPDATE: refined poses, landmarks, people. Repeated landmarks are left
+/// out, because they are already in the map.
 void AddTo(const map_update_t& message, MapDelta* changes);
 
 }  // namespace airdos
