@@ -19,7 +19,7 @@ struct PeoplePose {
 /// whole: somebody who does not do what was predicted says little. Without people the prior comes
 /// back.
 PeoplePose EstimatePoseFromPeople(const PosePrior& prior,
-                                  const std::vector<PersonConstraint>& people);
+                                  const std::vector<HumanConstraint>& people);
 
 }  // namespace airdos
 

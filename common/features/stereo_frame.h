@@ -24,7 +24,7 @@ struct StereoImagePair {
   cv::Mat left;
   cv::Mat right;
   cv::Mat mask;  ///< of the left image, not 0 = no static feature may come from here; or empty
-  std::vector<PersonMeasurement> people;  ///< in view; empty where people are not to be used
+  std::vector<HumanMeasurement> people;  ///< in view; empty where people are not to be used
 };
 
 /// What the odometry needs of one frame, computed once: the pyramids of both images, their features

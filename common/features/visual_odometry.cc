@@ -86,7 +86,7 @@ VisualOdometry::Prediction VisualOdometry::PredictMotion(double time_s, Odometry
   return {step_s, motion_.Predict(recent_.empty() ? Se3() : LastPose(), step_s)};
 }
 
-PeoplePose VisualOdometry::CorrectByPeople(const std::vector<PersonMeasurement>& people,
+PeoplePose VisualOdometry::CorrectByPeople(const std::vector<HumanMeasurement>& people,
                                            const PosePrior& prior) const {
   if (recent_.empty() || num_static_ >= options_.max_static_for_people) {
     return EstimatePoseFromPeople(prior, {});

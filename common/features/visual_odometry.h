@@ -77,7 +77,7 @@ class VisualOdometry {
   /// Camera and people keep their velocities.
   Prediction PredictMotion(double time_s, OdometryFrame* result);
   /// The prior, corrected by people if static landmarks were few in the last frame.
-  PeoplePose CorrectByPeople(const std::vector<PersonMeasurement>& people,
+  PeoplePose CorrectByPeople(const std::vector<HumanMeasurement>& people,
                              const PosePrior& prior) const;
   /// The measured pose. If static landmarks turn out to be many, it is estimated again without
   /// people, and their information is dropped.

@@ -15,7 +15,7 @@
 namespace airdos {
 
 /// One person in one stereo frame, in the left camera C.
-struct PersonMeasurement {
+struct HumanMeasurement {
   struct Joint {
     int joint = 0;  ///< COCO-18
     Eigen::Vector3d p_C = Eigen::Vector3d::Zero();
@@ -27,7 +27,7 @@ struct PersonMeasurement {
 
 /// What a person says of the camera's pose: for each of n joints, where it must be in W and where
 /// the camera sees it; r = T_W_C p_C - p_W (3n) is zero on average, with this covariance.
-struct PersonConstraint {
+struct HumanConstraint {
   HumanId id;
   std::vector<Eigen::Vector3d> p_W;
   std::vector<Eigen::Vector3d> p_C;
@@ -61,10 +61,10 @@ class PeopleFilter {
   /// What the people of this frame say of the camera, which is near T_W_C: of those known long
   /// enough, and of their joints that are where they may be given `pose_covariance` (tangent of
   /// T_W_C).
-  std::vector<PersonConstraint> Constrain(const std::vector<PersonMeasurement>& people,
-                                          const Se3& T_W_C, const Matrix6d& pose_covariance) const;
+  std::vector<HumanConstraint> Constrain(const std::vector<HumanMeasurement>& people,
+                                         const Se3& T_W_C, const Matrix6d& pose_covariance) const;
   /// Takes the people of this frame in, seen from T_W_C with that covariance.
-  void Update(const std::vector<PersonMeasurement>& people, const Se3& T_W_C,
+  void Update(const std::vector<HumanMeasurement>& people, const Se3& T_W_C,
               const Matrix6d& pose_covariance);
   /// W has been corrected: everyone moves along.
   void Transform(const Se3& T_Wnew_Wold);
@@ -93,12 +93,12 @@ class PeopleFilter {
     Eigen::MatrixXd jacobian;     // of the residual by the tangent of T_W_C
   };
 
-  std::optional<Match> MatchJoints(const Person& person, const PersonMeasurement& measurement,
+  std::optional<Match> MatchJoints(const Person& person, const HumanMeasurement& measurement,
                                    const Se3& T_W_C, const Matrix6d& pose_covariance) const;
   Person Begin() const;
   void Correct(const Match& match, const Matrix6d& pose_covariance, Person* person) const;
   void LearnAcceleration(const Match& match, const Matrix6d& pose_covariance, Person* person) const;
-  void AddNewJoints(const PersonMeasurement& measurement, const Se3& T_W_C,
+  void AddNewJoints(const HumanMeasurement& measurement, const Se3& T_W_C,
                     const Matrix6d& pose_covariance, Person* person) const;
 
   PeopleFilterOptions options_;

@@ -58,13 +58,13 @@ static_features_t UnknownStaticFeatures(const Header& header, std::int64_t odome
   return message;
 }
 
-std::vector<PersonMeasurement> ToPersonMeasurements(const human_observations_t& message) {
-  std::vector<PersonMeasurement> people;
+std::vector<HumanMeasurement> ToHumanMeasurements(const human_observations_t& message) {
+  std::vector<HumanMeasurement> people;
   for (const human_observation_t& human : message.humans) {
-    PersonMeasurement person{HumanId{human.track_id}, {}};
+    HumanMeasurement person{HumanId{human.track_id}, {}};
     for (std::size_t i = 0; i < human.joint_id.size(); ++i) {
       const std::vector<float>& s = human.covariance_C[i];
-      PersonMeasurement::Joint joint;
+      HumanMeasurement::Joint joint;
       joint.joint = human.joint_id[i];
       joint.p_C = {human.x_C_m[i], human.y_C_m[i], human.z_C_m[i]};
       joint.covariance_C << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];

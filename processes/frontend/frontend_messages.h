@@ -24,7 +24,7 @@ static_features_t ToStaticFeatures(const Header& header, std::int64_t odometry_s
 static_features_t UnknownStaticFeatures(const Header& header, std::int64_t odometry_start_seq);
 
 /// All people of the message. Joints that are not finite or have no valid covariance are left out.
-std::vector<PersonMeasurement> ToPersonMeasurements(const human_observations_t& message);
+std::vector<HumanMeasurement> ToHumanMeasurements(const human_observations_t& message);
 
 /// Adds one part of a MAP_UPDATE; `newest` is left to the caller.
 void AddTo(const map_update_t& part, MapCorrection* correction);

@@ -148,7 +148,7 @@ std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
       *left,
       *right,
       Mask(inputs),
-      inputs.humans ? ToPersonMeasurements(*inputs.humans) : std::vector<PersonMeasurement>()};
+      inputs.humans ? ToHumanMeasurements(*inputs.humans) : std::vector<HumanMeasurement>()};
 }
 
 void FrontendNode::WatchNumbers(const FrontendInputs& inputs) {

@@ -109,7 +109,7 @@ TEST(FrontendMessages, AJointKeepsItsPlaceAndItsWholeCovariance) {
   message.humans[0].track_id = 17;
   message.humans[1].track_id = 18;
   AddJoint(5, {0.5F, -0.75F, 4}, kCovariance, &message.humans[1]);
-  const std::vector<PersonMeasurement> people = ToPersonMeasurements(message);
+  const std::vector<HumanMeasurement> people = ToHumanMeasurements(message);
   ASSERT_EQ(people.size(), 2u);
   EXPECT_EQ(people[0].id.value, 17);
   EXPECT_TRUE(people[0].joints.empty());
@@ -133,7 +133,7 @@ TEST(FrontendMessages, JointsThatAreNoneAreLeftOut) {
   human.covariance_C[2][4] = kNaN;
   human.covariance_C[3][1] = 0.5F;  // more than its variances allow
   human.covariance_C[4][3] = -1;
-  const std::vector<PersonMeasurement> people = ToPersonMeasurements(message);
+  const std::vector<HumanMeasurement> people = ToHumanMeasurements(message);
   ASSERT_EQ(people.size(), 1u);
   ASSERT_EQ(people[0].joints.size(), 1u);
   EXPECT_EQ(people[0].joints[0].joint, 5);

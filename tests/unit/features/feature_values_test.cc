@@ -150,7 +150,7 @@ TEST(PeoplePoseWeight, APersonCountsLessBeyondOneAndAHalfSigma) {
   const PosePrior prior = IsotropicPrior(T_W_C, 1e-9, 1e-9);  // stays where it is
   // Two joints, each `sigmas` off in each axis.
   const auto information = [&](double sigmas) {
-    PersonConstraint person;
+    HumanConstraint person;
     person.p_C = {{0.5, 0, 4}, {0.3, 0.6, 4.2}};
     for (const Eigen::Vector3d& p_C : person.p_C) {
       person.p_W.push_back(T_W_C * p_C + 0.1 * sigmas * Eigen::Vector3d(1, -1, 1));
