@@ -30,6 +30,9 @@ class FeatureExtractor {
   std::vector<Feature> Extract(const ImagePyramid& pyramid, const cv::Mat& mask,
                                int* num_masked) const;
 
+  /// Of the pyramids that it is made for.
+  int num_levels() const { return options_.num_levels; }
+
  private:
   std::vector<cv::KeyPoint> DetectLevel(const ImagePyramid& pyramid, int level, const cv::Mat& mask,
                                         int* num_masked) const;

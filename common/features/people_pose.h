@@ -12,6 +12,7 @@ namespace airdos {
 struct PeoplePose {
   PosePrior prior;                          ///< the prior and the people combined
   Matrix6d information = Matrix6d::Zero();  ///< of the tangent, from people only
+  int num_people = 0;                       ///< who contributed
 };
 
 /// The camera's pose from people: `prior` corrected by where the camera sees them and where they
@@ -19,7 +20,7 @@ struct PeoplePose {
 /// weight: somebody who does not move as predicted has little influence. Without people the prior
 /// is returned.
 PeoplePose EstimatePoseFromPeople(const PosePrior& prior,
-                                  const std::vector<PersonConstraint>& people);
+                                  const std::vector<HumanConstraint>& people);
 
 }  // namespace airdos
 

@@ -23,8 +23,8 @@ HumanTracker::HumanTracker(const HumanTrackerOptions& options, HumanId first_id)
 
 TrackedFrame HumanTracker::Process(const StereoCamera& camera, const PeopleFrame& frame) {
   const StereoImages images{frame.left_gray, frame.right_gray};
-  const StereoMatching matching = MatchStereo(options_.matcher, camera, frame.left, frame.right);
-  const std::vector<Observation> observations = Observe(camera, frame, matching);
+  const PersonPairing pairing = PairPeople(options_.matcher, camera, frame.left, frame.right);
+  const std::vector<Observation> observations = Observe(camera, frame, pairing);
   flow_.SetImage(frame.left_gray);
   shift_px_ = flow_.shift_px();
   if (options_.use_shift_vote) {
@@ -36,7 +36,7 @@ TrackedFrame HumanTracker::Process(const StereoCamera& camera, const PeopleFrame
   const std::vector<std::optional<int>> track_of = FindTracks(observations);
 
   TrackedFrame result;
-  result.num_rejected = static_cast<int>(matching.unpaired_right.size());
+  result.num_rejected = static_cast<int>(pairing.unpaired_right.size());
   std::vector<bool> is_seen(tracks_.size(), false);
   const auto report = [&result](std::optional<TrackedHuman> human) {
     if (human) result.humans.push_back(std::move(*human));
@@ -89,7 +89,7 @@ void HumanTracker::PredictTracks() {
 
 std::vector<HumanTracker::Observation> HumanTracker::Observe(const StereoCamera& camera,
                                                              const PeopleFrame& frame,
-                                                             const StereoMatching& matching) const {
+                                                             const PersonPairing& pairing) const {
   const auto at = [](const std::vector<BodyKeypoints>& people, int i) -> const BodyKeypoints& {
     return people[static_cast<std::size_t>(i)];
   };
@@ -98,14 +98,14 @@ std::vector<HumanTracker::Observation> HumanTracker::Observe(const StereoCamera&
     return MeasureAppearance(image, left, options_.track.min_confidence);
   };
   std::vector<Observation> observations;
-  for (const StereoPair& pair : matching.pairs) {
+  for (const PersonPair& pair : pairing.pairs) {
     const BodyKeypoints& left = at(frame.left, pair.left);
     const double height_px = kPersonHeightM * pair.disparity_px / camera.baseline_m;
     observations.push_back({{left, pair.disparity_px, height_px, appearance(left)},
                             SwapSides(at(frame.right, pair.right), pair.right_swap),
                             pair.right_swap});
   }
-  for (const int i : matching.unpaired_left) {
+  for (const int i : pairing.unpaired_left) {
     const BodyKeypoints& left = at(frame.left, i);
     observations.push_back(
         {{left, std::nullopt, 0, appearance(left)}, std::nullopt, SideSwap::kNone});

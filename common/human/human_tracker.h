@@ -9,7 +9,7 @@
 #include "common/human/human_track.h"
 #include "common/human/image_flow.h"
 #include "common/human/joint_triangulator.h"
-#include "common/human/stereo_matcher.h"
+#include "common/human/person_pairing.h"
 #include "common/util/ids.h"
 
 namespace airdos {
@@ -31,7 +31,7 @@ struct HumanTrackerOptions {
   double min_swap_gain_squared_sigmas = 20;
   double min_doubtful_swap_gain_squared_sigmas = 3;
   bool use_shift_vote = true;  ///< let the people tell how far the camera turned
-  StereoMatcherOptions matcher;
+  PersonPairingOptions matcher;
   JointTriangulatorOptions triangulator;
   ImageFlowOptions flow;
   HumanTrackOptions track;
@@ -73,7 +73,7 @@ class HumanTracker {
 
   void PredictTracks();
   std::vector<Observation> Observe(const StereoCamera& camera, const PeopleFrame& frame,
-                                   const StereoMatching& matching) const;
+                                   const PersonPairing& pairing) const;
   // For each observation, the track that it belongs to.
   std::vector<std::optional<int>> FindTracks(const std::vector<Observation>& observations) const;
   void Associate(const std::vector<Observation>& observations, bool is_stereo,

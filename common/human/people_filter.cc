@@ -44,14 +44,14 @@ void PeopleFilter::Predict(double step_s) {
 }
 
 std::optional<PeopleFilter::Match> PeopleFilter::MatchJoints(
-    const Person& person, const PersonMeasurement& measurement, const Se3& T_W_C,
+    const Person& person, const HumanMeasurement& measurement, const Se3& T_W_C,
     const Matrix6d& pose_covariance) const {
   Match match;
   const Eigen::Matrix3d R_W_C = T_W_C.rotation.toRotationMatrix();
   std::vector<Eigen::Vector3d> residuals;
   std::vector<Eigen::Matrix3d> measured;
   const double max_error2 = options_.max_joint_sigmas * options_.max_joint_sigmas;
-  for (const PersonMeasurement::Joint& joint : measurement.joints) {
+  for (const HumanMeasurement::Joint& joint : measurement.joints) {
     const std::optional<int> place = PlaceOf(joint.joint);
     if (!place || !person.is_known[static_cast<std::size_t>(*place)]) continue;
     const int row = 3 + 3 * *place;
@@ -85,17 +85,17 @@ std::optional<PeopleFilter::Match> PeopleFilter::MatchJoints(
   return match;
 }
 
-std::vector<PersonConstraint> PeopleFilter::Constrain(const std::vector<PersonMeasurement>& people,
-                                                      const Se3& T_W_C,
-                                                      const Matrix6d& pose_covariance) const {
-  std::vector<PersonConstraint> constraints;
-  for (const PersonMeasurement& measurement : people) {
+std::vector<HumanConstraint> PeopleFilter::Constrain(const std::vector<HumanMeasurement>& people,
+                                                     const Se3& T_W_C,
+                                                     const Matrix6d& pose_covariance) const {
+  std::vector<HumanConstraint> constraints;
+  for (const HumanMeasurement& measurement : people) {
     const auto known = people_.find(measurement.id);
     if (known == people_.end() || known->second.num_seen < options_.min_seen_frames) continue;
     const Person& person = known->second;
     const auto match = MatchJoints(person, measurement, T_W_C, pose_covariance);
     if (!match) continue;
-    PersonConstraint constraint;
+    HumanConstraint constraint;
     constraint.id = measurement.id;
     constraint.p_C = match->p_C;
     for (const int place : match->places) {
@@ -152,10 +152,10 @@ void PeopleFilter::LearnAcceleration(const Match& match, const Matrix6d& pose_co
                  options_.max_acceleration_factor * options_.acceleration_m_s2);
 }
 
-void PeopleFilter::AddNewJoints(const PersonMeasurement& measurement, const Se3& T_W_C,
+void PeopleFilter::AddNewJoints(const HumanMeasurement& measurement, const Se3& T_W_C,
                                 const Matrix6d& pose_covariance, Person* person) const {
   const Eigen::Matrix3d R_W_C = T_W_C.rotation.toRotationMatrix();
-  for (const PersonMeasurement::Joint& joint : measurement.joints) {
+  for (const HumanMeasurement::Joint& joint : measurement.joints) {
     const std::optional<int> place = PlaceOf(joint.joint);
     if (!place || person->is_known[static_cast<std::size_t>(*place)]) continue;
     const int row = 3 + 3 * *place;
@@ -169,10 +169,10 @@ void PeopleFilter::AddNewJoints(const PersonMeasurement& measurement, const Se3&
   }
 }
 
-void PeopleFilter::Update(const std::vector<PersonMeasurement>& people, const Se3& T_W_C,
+void PeopleFilter::Update(const std::vector<HumanMeasurement>& people, const Se3& T_W_C,
                           const Matrix6d& pose_covariance) {
   for (auto& [id, person] : people_) ++person.num_missed;
-  for (const PersonMeasurement& measurement : people) {
+  for (const HumanMeasurement& measurement : people) {
     Person& person = people_.try_emplace(measurement.id, Begin()).first->second;
     const auto match = MatchJoints(person, measurement, T_W_C, pose_covariance);
     if (person.num_seen > 0 && !match) {

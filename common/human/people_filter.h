@@ -15,7 +15,7 @@
 namespace airdos {
 
 /// One person in one stereo frame, in the left camera C.
-struct PersonMeasurement {
+struct HumanMeasurement {
   /// A joint with its covariance.
   struct Joint {
     int joint = 0;  ///< COCO-18
@@ -29,7 +29,7 @@ struct PersonMeasurement {
 /// What a person contributes to the camera's pose: for each of n joints, its predicted position in
 /// W and where the camera sees it. r = T_W_C p_C - p_W (3n values) has zero mean and this
 /// covariance.
-struct PersonConstraint {
+struct HumanConstraint {
   HumanId id;
   std::vector<Eigen::Vector3d> p_W;
   std::vector<Eigen::Vector3d> p_C;
@@ -64,10 +64,10 @@ class PeopleFilter {
   /// Constraints that the people of this frame put on the camera, which is near T_W_C. Uses people
   /// who have been known long enough, and those of their joints that are plausible given
   /// `pose_covariance` (tangent of T_W_C).
-  std::vector<PersonConstraint> Constrain(const std::vector<PersonMeasurement>& people,
-                                          const Se3& T_W_C, const Matrix6d& pose_covariance) const;
+  std::vector<HumanConstraint> Constrain(const std::vector<HumanMeasurement>& people,
+                                         const Se3& T_W_C, const Matrix6d& pose_covariance) const;
   /// Takes in the people of this frame, seen from T_W_C with the given covariance.
-  void Update(const std::vector<PersonMeasurement>& people, const Se3& T_W_C,
+  void Update(const std::vector<HumanMeasurement>& people, const Se3& T_W_C,
               const Matrix6d& pose_covariance);
   /// Moves everyone along when W has been corrected.
   void Transform(const Se3& T_Wnew_Wold);
@@ -97,12 +97,12 @@ class PeopleFilter {
     Eigen::MatrixXd jacobian;     // of the residual with respect to the tangent of T_W_C
   };
 
-  std::optional<Match> MatchJoints(const Person& person, const PersonMeasurement& measurement,
+  std::optional<Match> MatchJoints(const Person& person, const HumanMeasurement& measurement,
                                    const Se3& T_W_C, const Matrix6d& pose_covariance) const;
   Person Begin() const;
   void Correct(const Match& match, const Matrix6d& pose_covariance, Person* person) const;
   void LearnAcceleration(const Match& match, const Matrix6d& pose_covariance, Person* person) const;
-  void AddNewJoints(const PersonMeasurement& measurement, const Se3& T_W_C,
+  void AddNewJoints(const HumanMeasurement& measurement, const Se3& T_W_C,
                     const Matrix6d& pose_covariance, Person* person) const;
 
   PeopleFilterOptions options_;

@@ -1,79 +1,14 @@
 #include "processes/frontend/frontend_node.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 #include "common/human/body_mask.h"
+#include "processes/frontend/frontend_messages.h"
 #include "processes/node/message/image_codec.h"
 #include "processes/node/message/keypoint_messages.h"
 
 namespace airdos {
-namespace {
-
-std::int8_t ToMessage(TrackingState state) {
-  switch (state) {
-    case TrackingState::kInitializing:
-      return static_features_t::STATE_INITIALIZING;
-    case TrackingState::kTracking:
-      return static_features_t::STATE_TRACKING;
-    case TrackingState::kWeak:
-      return static_features_t::STATE_WEAK;
-    case TrackingState::kCoasting:
-      return static_features_t::STATE_COASTING;
-  }
-  return static_features_t::STATE_INVALID;
-}
-
-static_features_t ToMessage(const Header& header, std::int64_t odometry_start_seq,
-                            const OdometryFrame& frame) {
-  static_features_t message;
-  message.utime = header.utime;
-  message.seq = header.seq;
-  message.session = header.session;
-  message.tracking_state = ToMessage(frame.state);
-  FromSe3(frame.T_O_C, message.position_O_C, message.orientation_O_C);
-  message.odometry_start_seq = odometry_start_seq;
-  FromSe3(frame.T_W_C, message.position_W_C, message.orientation_W_C);
-  message.sigma_position_m = frame.prior_sigma_position_m;
-  message.sigma_orientation_rad = frame.prior_sigma_orientation_rad;
-  message.num_detected = frame.num_detected;
-  message.num_masked = frame.num_masked;
-  message.num_matched = frame.num_matched;
-  message.num_features = static_cast<std::int32_t>(frame.sightings.size());
-  for (const LandmarkSighting& sighting : frame.sightings) {
-    message.landmark_id.push_back(sighting.id.value);
-    message.u_left_px.push_back(static_cast<float>(sighting.uvu_px.x()));
-    message.v_px.push_back(static_cast<float>(sighting.uvu_px.y()));
-    message.u_right_px.push_back(static_cast<float>(sighting.uvu_px.z()));
-    message.has_right.push_back(sighting.has_right);
-    message.sigma_px.push_back(static_cast<float>(sighting.sigma_px));
-  }
-  return message;
-}
-
-/// The output for a frame without a pose, in which nothing was examined.
-static_features_t WithoutPose(const Header& header, std::int64_t odometry_start_seq) {
-  static_features_t message = ToMessage(header, odometry_start_seq, OdometryFrame());
-  message.tracking_state = static_features_t::STATE_INVALID;
-  return message;
-}
-
-void AddTo(const map_update_t& part, MapCorrection* correction) {
-  for (const frame_pose_t& frame : part.frames) {
-    correction->frames.emplace_back(FrameId{frame.seq},
-                                    ToSe3(frame.position_W_C, frame.orientation_W_C));
-  }
-  for (std::size_t i = 0; i < part.landmark_id.size(); ++i) {
-    correction->landmarks_W_m.emplace_back(
-        LandmarkId{part.landmark_id[i]},
-        Eigen::Vector3d(part.x_W_m[i], part.y_W_m[i], part.z_W_m[i]));
-  }
-  for (const std::int64_t id : part.removed_landmark_id)
-    correction->removed.push_back(LandmarkId{id});
-}
-
-}  // namespace
 
 FrontendNode::FrontendNode(const FrontendOptions& options)
     : FrameNode("frontend"), options_(options) {
@@ -162,28 +97,6 @@ void FrontendNode::ApplyUpdates() {
   }
 }
 
-std::vector<PersonMeasurement> FrontendNode::People(const FrontendInputs& inputs) {
-  std::vector<PersonMeasurement> people;
-  if (!inputs.humans) return people;
-  for (const human_observation_t& human : inputs.humans->humans) {
-    PersonMeasurement person{HumanId{human.track_id}, {}};
-    for (std::size_t i = 0; i < human.joint_id.size(); ++i) {
-      const std::vector<float>& s = human.covariance_C[i];
-      PersonMeasurement::Joint joint;
-      joint.joint = human.joint_id[i];
-      joint.p_C = {human.x_C_m[i], human.y_C_m[i], human.z_C_m[i]};
-      joint.covariance_C << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
-      const bool is_covariance =
-          Eigen::LLT<Eigen::Matrix3d>(joint.covariance_C).info() == Eigen::Success;
-      if (joint.p_C.allFinite() && joint.covariance_C.allFinite() && is_covariance) {
-        person.joints.push_back(joint);
-      }
-    }
-    people.push_back(std::move(person));
-  }
-  return people;
-}
-
 bool FrontendNode::Fits(const std::optional<cv::Mat>& image, const char* channel,
                         const std::string& reason) {
   if (image && image->size() == cv::Size(camera().width, camera().height)) return true;
@@ -230,12 +143,13 @@ std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
   if (is_pair) watches_.input.AddPair(*left, *right);
   // A blank right image has no corners, so landmarks are tracked in the left image only.
   if (!has_right) right = cv::Mat::zeros(left->size(), CV_8UC1);
-  return StereoImagePair{FrameId{header.seq},
-                         static_cast<double>(header.utime - first_.utime) * 1e-6,
-                         *left,
-                         *right,
-                         Mask(inputs),
-                         People(inputs)};
+  return StereoImagePair{
+      FrameId{header.seq},
+      static_cast<double>(header.utime - first_.utime) * 1e-6,
+      *left,
+      *right,
+      Mask(inputs),
+      inputs.humans ? ToHumanMeasurements(*inputs.humans) : std::vector<HumanMeasurement>()};
 }
 
 void FrontendNode::WatchNumbers(const FrontendInputs& inputs) {
@@ -259,9 +173,9 @@ void FrontendNode::WatchNumbers(const FrontendInputs& inputs) {
 static_features_t FrontendNode::Track(const Header& header,
                                       const std::optional<StereoImagePair>& images) {
   const double time_s = static_cast<double>(header.utime - first_.utime) * 1e-6;
-  return ToMessage(header, first_.seq,
-                   images ? odometry_->Process(camera(), *images)
-                          : odometry_->Coast(FrameId{header.seq}, time_s));
+  return ToStaticFeatures(header, first_.seq,
+                          images ? odometry_->Process(camera(), *images)
+                                 : odometry_->Coast(FrameId{header.seq}, time_s));
 }
 
 void FrontendNode::ProcessFrame(const Header& header, FrontendInputs inputs) {
@@ -271,7 +185,8 @@ void FrontendNode::ProcessFrame(const Header& header, FrontendInputs inputs) {
   // Otherwise its time belongs to another image, for example of a camera with a different
   // numbering.
   const bool is_new = images || (newest_utime_ && header.utime > *newest_utime_);
-  static_features_t message = is_new ? Track(header, images) : WithoutPose(header, first_.seq);
+  static_features_t message =
+      is_new ? Track(header, images) : UnknownStaticFeatures(header, first_.seq);
   if (!Validate(message).empty()) {
     // After too many frames without images, the predicted pose exceeds all bounds: start afresh, as
     // after a restart.

@@ -64,7 +64,6 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   /// The frame whose update must arrive before the next frame can start.
   std::optional<std::int64_t> RequiredUpdate() const;
   void ApplyUpdates();
-  static std::vector<PersonMeasurement> People(const FrontendInputs& inputs);
   bool Fits(const std::optional<cv::Mat>& image, const char* channel, const std::string& reason);
   /// Where people are, from masks or otherwise from keypoints; empty if there is neither.
   cv::Mat Mask(const FrontendInputs& inputs);

@@ -7,7 +7,7 @@ namespace {
 
 // Keypoints and range mean the same to each step, so the file names them once.
 void AddShared(HumanTrackerOptions* options, OptionTable* table) {
-  StereoMatcherOptions* matcher = &options->matcher;
+  PersonPairingOptions* matcher = &options->matcher;
   JointTriangulatorOptions* triangulator = &options->triangulator;
   HumanTrackOptions* track = &options->track;
   const auto noise = [&](double KeypointNoise::*member) -> std::vector<double*> {
@@ -37,7 +37,7 @@ void AddShared(HumanTrackerOptions* options, OptionTable* table) {
   table->RequireNotBelow("range.max_depth_m", "range.min_depth_m");
 }
 
-void AddPairing(StereoMatcherOptions* matcher, OptionTable* table) {
+void AddPairing(PersonPairingOptions* matcher, OptionTable* table) {
   table->AddSection("pairing");
   table->Add("pairing.min_joints", &matcher->min_joints, {1, kNumJoints}, "joints",
              "both images must see at least this many of a person");

@@ -16,6 +16,7 @@
 #include "common/map/four_d_map.h"
 #include "common/util/output_folder.h"
 #include "processes/map_recorder/map_recorder_options.h"
+#include "processes/map_recorder/session_files.h"
 #include "processes/node/frame_node.h"
 
 namespace airdos {
@@ -56,8 +57,7 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   static constexpr std::size_t kMaxGroundTruth = 1000000;
   static constexpr std::size_t kGroundTruthPerNote = 10;
   static constexpr std::int64_t kGroundTruthLag = 1000;
-  /// Each session has a folder; sessions beyond this limit are not recorded.
-  static constexpr int kMaxSessions = 1000;
+  static constexpr int kMaxSessions = SessionFiles::kMaxSessions;
   /// Limit of sessions whose calibrations and ground truth are kept while they wait for their first
   /// frame.
   static constexpr std::size_t kMaxSessionsAhead = 100;
@@ -75,10 +75,10 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   void Finish() override;
 
   /// Folder of the current session; empty before the first frame.
-  const std::string& session_directory() const { return session_directory_; }
+  const std::string& session_directory() const { return files_.session_directory(); }
 
   /// For other files of this run that belong into the folder.
-  OutputFolder* results() { return &results_; }
+  OutputFolder* results() { return files_.results(); }
 
  protected:
   void StartSession(const Header& header) override;
@@ -96,35 +96,23 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
 
   std::string AddCalibration(const stereo_calibration_t& message);
   std::string AddGroundTruth(const pose_t& message);
-  /// Continues the map of a recorder that was killed; false if there is none.
-  bool Resume(const Header& header);
+  /// Takes the ground truth that lay beside the map of a recorder that was killed.
+  void TakeNotes(const FourDMap& notes);
+  /// Camera of the current session, if known.
+  std::optional<StereoCamera> Camera() const;
   /// Writes new ground truth of the current session beside the map.
   void NoteGroundTruth();
   void TakeOldGroundTruth(std::int64_t seq);
   void SetGroundTruth(const std::pair<const std::int64_t, GroundTruth>& pose);
   /// Warns if times do not increase.
   void WatchTime(const Header& header);
-  void Append(const MapChunk& chunk);
   void WriteChunk();
   void CloseSession();
-  /// Takes over the folder from an earlier run.
-  void ReplaceEarlierResults();
-  /// Opens the map of the current session, at its end or where a kill left it.
-  void OpenMap(std::int64_t num_bytes);
-  /// Throws InputError if the map, as read back, is not what was recorded.
-  void CompareWithRecorded(const FourDMap& map, const MapFileSummary& summary,
-                           std::int64_t num_bytes) const;
-  std::string PathOf(const std::string& name) const { return results_.PathOf(prefix_ + name); }
 
   MapRecorderOptions options_;
-  OutputFolder results_;
-  std::string prefix_;  // of the session's files in the folder: "" or "session_2/"
-  std::string session_directory_;
-  int num_sessions_ = 0;
+  SessionFiles files_;
   std::int64_t session_ = 0;
-  std::unique_ptr<MapFileWriter> file_;  // null before the first frame and after a failure
-  std::string failure_;                  // why writing stopped; empty if it did not
-  std::optional<Header> newest_pose_;    // latest in the session
+  std::optional<Header> newest_pose_;  // latest in the session
   bool is_time_said_ = false;
   MapDelta changes_;  // contents of the open chunk
   int num_frames_in_chunk_ = 0;
@@ -134,8 +122,7 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   std::map<std::int64_t, std::map<std::int64_t, GroundTruth>> ground_truth_;
   std::map<std::int64_t, std::map<std::int64_t, StereoCamera>> cameras_;
   std::size_t num_ground_truth_ = 0;
-  std::unique_ptr<MapFileWriter> notes_;  // map.airdos.open
-  std::set<std::int64_t> not_noted_;      // ground truth that is not yet in notes_
+  std::set<std::int64_t> not_noted_;  // ground truth that is not yet beside the map
 };
 
 std::unique_ptr<Node> MakeMapRecorderNode(ConfigReader* config);

@@ -269,9 +269,9 @@ state_estimate_t ToStateEstimate(const Header& header, const FrameEstimate& esti
   message.num_people = summary.num_people;
   message.num_rigidity_factors = summary.num_rigidity;
   message.num_motion_factors = summary.num_motion;
-  message.num_rigidity_eliminated = summary.num_rigidity_eliminated;
-  message.num_motion_eliminated = summary.num_motion_eliminated;
-  message.num_reprojection_eliminated = summary.num_reprojection_eliminated;
+  message.num_rigidity_eliminated = summary.num_rigidity_rejected;
+  message.num_motion_eliminated = summary.num_motion_rejected;
+  message.num_reprojection_eliminated = summary.num_reprojection_rejected;
   message.num_iterations = summary.num_iterations;
   message.initial_cost = summary.initial_cost;
   message.final_cost = summary.final_cost;

@@ -60,7 +60,7 @@ TEST(BundleCosts, ALandmark) {
   EXPECT_NEAR(CostOf(Options(), problem), 26, 1e-9);
   problem.observations[0].point = {Eigen::Vector3d(1.1, -0.3, 5.8), 0.05};
   EXPECT_NEAR(CostOf(Options(), problem), 18, 1e-9);  // (4 + 16 + 16) / 2
-  problem.observations[0].is_eliminated = true;
+  problem.observations[0].is_rejected = true;
   EXPECT_NEAR(CostOf(Options(), problem), 0, 1e-12);
 }
 
@@ -124,7 +124,7 @@ TEST(BundleCosts, AJointWithItsWholeCovariance) {
   options.huber_static_sigmas = 0.1;
   options.huber_dynamic_sigmas = 1;
   EXPECT_NEAR(CostOf(options, problem), Huber(squared, 1), 1e-9);
-  joint.is_eliminated = true;
+  joint.is_rejected = true;
   EXPECT_NEAR(CostOf(options, problem), 0, 1e-12);
 }
 
@@ -262,7 +262,7 @@ TEST(BundleCosts, NoMotionLeadsAcrossAGapOrABreak) {
   problem.frames[3].time_s = 1;
   problem.humans[0].joints[2].p_W.x() = 0.8;
   problem.humans[0].joints[3].p_W.x() = 1;
-  for (BundleProblem::JointState& joint : problem.humans[0].joints) joint.is_eliminated = true;
+  for (BundleProblem::JointState& joint : problem.humans[0].joints) joint.is_rejected = true;
   EXPECT_NEAR(CostOf(options, problem), 0.125, 1e-9) << "one velocity before and after a gap";
   options.motion_form = MotionForm::kVelocity;
   EXPECT_NEAR(CostOf(options, problem), 0.25, 1e-9);
@@ -330,7 +330,7 @@ TEST(BundleCosts, AMotionAPartChangesLittle) {
   for (auto& joint : joints) {
     if (joint.joint != kRightShoulder) continue;
     joint.p_W = joints[static_cast<std::size_t>(2 * joint.frame)].p_W + Eigen::Vector3d(0, 0, 1);
-    joint.is_eliminated = true;
+    joint.is_rejected = true;
   }
   BundleOptions options = WalkerOptions();
   options.motion_form = MotionForm::kSe3Smooth;

@@ -175,7 +175,7 @@ TEST(BundleTest, EveryMotionFormSolvesAndReportsMotions) {
 
 // The neighbours and the rest of the body hold the joint where it is, so that its own measurement
 // goes, and nothing else.
-TEST(BundleTest, AJointFarOffIsEliminated) {
+TEST(BundleTest, AJointFarOffIsRejected) {
   SyntheticSceneOptions scene_options = Walkers(100, 2);
   scene_options.joint_sigma_px = 0.2;
   const SyntheticScene scene = MakeSyntheticScene(scene_options);
@@ -188,10 +188,10 @@ TEST(BundleTest, AJointFarOffIsEliminated) {
   BundleProblem::JointState& wrong = problem.humans[0].joints[3];
   wrong.uvu_px += Eigen::Vector3d(0, 60, 0);  // along the image, where the segments say most
   const BundleSummary after = SolveBundle(options, &problem);
-  EXPECT_FALSE(right.humans[0].joints[3].is_eliminated);
-  EXPECT_TRUE(wrong.is_eliminated);
-  EXPECT_EQ(after.num_reprojection_eliminated, before.num_reprojection_eliminated + 1);
-  EXPECT_EQ(problem.humans[1].num_rigidity_eliminated, right.humans[1].num_rigidity_eliminated);
+  EXPECT_FALSE(right.humans[0].joints[3].is_rejected);
+  EXPECT_TRUE(wrong.is_rejected);
+  EXPECT_EQ(after.num_reprojection_rejected, before.num_reprojection_rejected + 1);
+  EXPECT_EQ(problem.humans[1].num_rigidity_rejected, right.humans[1].num_rigidity_rejected);
 }
 
 TEST(BundleTest, CovarianceMatchesTheScatterOfTheErrors) {
@@ -311,7 +311,7 @@ TEST(BundleTest, DegenerateProblemsDoNotCrash) {
   BundleProblem empty = MakeProblem(scene, false);
   empty.observations.clear();
   empty.landmarks.clear();
-  EXPECT_EQ(SolveBundle(BundleOptions(), &empty).num_reprojection_eliminated, 0);
+  EXPECT_EQ(SolveBundle(BundleOptions(), &empty).num_reprojection_rejected, 0);
 
   BundleProblem one_point = MakeProblem(scene, false);
   one_point.landmarks.resize(1);

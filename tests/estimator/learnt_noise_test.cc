@@ -130,7 +130,7 @@ TEST(LearntNoise, HowFarPointsStrayFromTheBody) {
   EXPECT_NEAR(Learn(Options(), problem).motion_sigma_m / expected(false), 1, 0.01);
   problem.humans[0].track_breaks.clear();
   for (BundleProblem::JointState& joint : problem.humans[0].joints) {
-    if (joint.frame == 2 && joint.joint == kNeck) joint.is_eliminated = true;
+    if (joint.frame == 2 && joint.joint == kNeck) joint.is_rejected = true;
   }
   EXPECT_NEAR(Learn(Options(), problem).motion_sigma_m / expected(false), 1, 0.01);
   EXPECT_GT(std::abs(expected(true) / expected(false) - 1), 0.05);

@@ -92,8 +92,8 @@ TEST(SlidingWindow, WhereTheStaticSceneIsStrongTheSummaryIsItsOwn) {
   const std::vector<FrameResult> without = RunAll(options, scene);
   const BundleSummary& both = with[5].estimate.summary;
   const BundleSummary& one = without[5].estimate.summary;
-  EXPECT_EQ(one.num_reprojection_eliminated, 1);
-  EXPECT_EQ(both.num_reprojection_eliminated, 2) << "the landmark and the joint";
+  EXPECT_EQ(one.num_reprojection_rejected, 1);
+  EXPECT_EQ(both.num_reprojection_rejected, 2) << "the landmark and the joint";
   EXPECT_GT(both.num_iterations, one.num_iterations);
   EXPECT_EQ(both.initial_cost, one.initial_cost);
   EXPECT_EQ(both.final_cost, one.final_cost);

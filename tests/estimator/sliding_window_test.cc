@@ -221,7 +221,7 @@ TEST(SlidingWindow, CountsWhatHoldsTheNewestFrame) {
   const FrameEstimate estimate = ThirdFrame(StaticOnly());
   EXPECT_EQ(estimate.num_static_landmarks, 10) << "seven were seen only once";
   EXPECT_EQ(estimate.num_static_observations, 9);
-  EXPECT_EQ(estimate.summary.num_reprojection_eliminated, 1);
+  EXPECT_EQ(estimate.summary.num_reprojection_rejected, 1);
   EXPECT_EQ(estimate.status, Status::kConverged);
   EXPECT_EQ(estimate.id.value, 2);
   EXPECT_LT(estimate.covariance.norm(), 0.1);

@@ -124,9 +124,9 @@ TEST_P(StructuredSolverTest, EndsWhereCeresEnds) {
     const BundleSummary ours = SolveBundle(options, &problem);
     EXPECT_NEAR(ours.initial_cost, ceres.initial_cost, 1e-9 * ceres.initial_cost);
     EXPECT_NEAR(ours.final_cost, ceres.final_cost, 1e-6 * ceres.final_cost + 1e-12);
-    EXPECT_EQ(ours.num_reprojection_eliminated, ceres.num_reprojection_eliminated);
-    EXPECT_EQ(ours.num_rigidity_eliminated, ceres.num_rigidity_eliminated);
-    EXPECT_EQ(ours.num_motion_eliminated, ceres.num_motion_eliminated);
+    EXPECT_EQ(ours.num_reprojection_rejected, ceres.num_reprojection_rejected);
+    EXPECT_EQ(ours.num_rigidity_rejected, ceres.num_rigidity_rejected);
+    EXPECT_EQ(ours.num_motion_rejected, ceres.num_motion_rejected);
     for (std::size_t i = 0; i < problem.frames.size(); ++i) {
       // To the first frame: where none is fixed they are free to move together.
       const Se3 T_0_C = problem.frames[0].T_W_C.inverse() * problem.frames[i].T_W_C;

@@ -93,7 +93,7 @@ TEST(SlidingWindowTest, OutliersAreThrownOut) {
   const std::vector<FrameResult> results = RunAll(StaticOnly(), scene);
   const double error_m = RmsPositionError(Poses(results), scene.T_W_C);
   EXPECT_LT(error_m, 0.015);
-  EXPECT_GT(results.back().estimate.summary.num_reprojection_eliminated, 10);
+  EXPECT_GT(results.back().estimate.summary.num_reprojection_rejected, 10);
 }
 
 TEST(SlidingWindowTest, PeopleCarryTheCameraWhereTheStaticSceneIsGone) {
@@ -256,7 +256,7 @@ TEST(TrustRuleTest, EachConditionCounts) {
   other.num_motion = 10;
   EXPECT_FALSE(TrustsPeople(options, 10, without, other, shift));  // hardly anybody
   other = with;
-  other.num_motion_eliminated = 30;
+  other.num_motion_rejected = 30;
   EXPECT_FALSE(TrustsPeople(options, 10, without, other, shift));  // they disagree
   other = with;
   other.newest_covariance = 0.0085 * Matrix6d::Identity();         // 0.85 is more than 0.9 squared

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/node/frontend_messages.h"
+#include "tests/node/frontend_walk.h"
 
 namespace airdos {
 namespace {

@@ -19,7 +19,7 @@
 #include "processes/optimizer/optimizer_messages.h"
 #include "processes/optimizer/optimizer_node.h"
 #include "tests/node/fake_nodes.h"
-#include "tests/node/frontend_messages.h"
+#include "tests/node/frontend_walk.h"
 
 // What users' own drivers and second plays of a log do to processes that run: they go on, and say
 // in words what is wrong.

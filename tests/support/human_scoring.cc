@@ -121,8 +121,8 @@ void ScorePairing(const HumanTrackerOptions& options, const StereoCamera& camera
   for (const auto& identity : right) {
     if (identity && in_left.count(*identity) != 0) ++score->num_possible_pairs;
   }
-  for (const StereoPair& pair :
-       MatchStereo(options.matcher, camera, frame.left, frame.right).pairs) {
+  for (const PersonPair& pair :
+       PairPeople(options.matcher, camera, frame.left, frame.right).pairs) {
     ++score->num_pairs;
     const auto& other = right[static_cast<std::size_t>(pair.right)];
     if (!other || *other != truth.identity_left[static_cast<std::size_t>(pair.left)]) {

@@ -47,14 +47,14 @@ BundleSummary SolveBundle(const BundleOptions& options, BundleProblem* problem,
                           std::vector<double>* memory) {
   for (BundleProblem::Human& human : problem->humans) {
     human.motions.clear();
-    human.num_rigidity_eliminated = 0;
-    human.num_motion_eliminated = 0;
+    human.num_rigidity_rejected = 0;
+    human.num_motion_rejected = 0;
   }
   BundleGraph graph(options, problem);
   Minimizer minimizer(options, graph.factor_graph(), memory);
   const MinimizerSummary first = minimizer.Minimize(options.max_iterations);
   MinimizerSummary last = first;
-  if (options.max_iterations_after_rejection > 0 && graph.Eliminate() > 0) {
+  if (options.max_iterations_after_rejection > 0 && graph.RejectOutliers() > 0) {
     last = minimizer.Minimize(options.max_iterations_after_rejection);
     last.num_iterations += first.num_iterations;
   }

@@ -89,20 +89,20 @@ double BundleGraph::Threshold(Kind kind) const {
   AIRDOS_CHECK(false);
 }
 
-void BundleGraph::CountEliminated(const Factor& factor) {
-  if (factor.is_eliminated != nullptr) *factor.is_eliminated = true;
-  if (factor.num_eliminated != nullptr) ++*factor.num_eliminated;
+void BundleGraph::CountRejected(const Factor& factor) {
+  if (factor.is_rejected != nullptr) *factor.is_rejected = true;
+  if (factor.num_rejected != nullptr) ++*factor.num_rejected;
   if (factor.kind == Kind::kRigidity) {
-    ++summary_.num_rigidity_eliminated;
+    ++summary_.num_rigidity_rejected;
   } else if (factor.kind == Kind::kMotion) {
-    ++summary_.num_motion_eliminated;
+    ++summary_.num_motion_rejected;
   } else {
-    ++summary_.num_reprojection_eliminated;
+    ++summary_.num_reprojection_rejected;
   }
 }
 
-int BundleGraph::Eliminate() {
-  int num_eliminated = 0;
+int BundleGraph::RejectOutliers() {
+  int num_rejected = 0;
   std::vector<Factor> kept;
   kept.reserve(factors_.size());
   for (const Factor& factor : factors_) {
@@ -110,12 +110,12 @@ int BundleGraph::Eliminate() {
       kept.push_back(factor);
       continue;
     }
-    CountEliminated(factor);
+    CountRejected(factor);
     graph_.RemoveFactor(factor.index);
-    ++num_eliminated;
+    ++num_rejected;
   }
   factors_ = std::move(kept);
-  return num_eliminated;
+  return num_rejected;
 }
 
 int BundleGraph::newest_pose() const {

@@ -32,7 +32,7 @@ class BundleGraph {
 
   /// Removes the factors whose error at the current values exceeds their threshold, and marks them
   /// in the problem. Returns the number of factors removed.
-  int Eliminate();
+  int RejectOutliers();
   /// Block of the newest frame's pose; -1 if that is fixed or there is none.
   int newest_pose() const;
   /// Copies poses and motions back to the problem.
@@ -47,8 +47,8 @@ class BundleGraph {
   struct Factor {
     int index;  ///< in the graph
     Kind kind;
-    bool* is_eliminated;  ///< may be null
-    int* num_eliminated;  ///< may be null
+    bool* is_rejected;  ///< may be null
+    int* num_rejected;  ///< may be null
   };
   using JointState = BundleProblem::JointState;
   /// A joint and its block of unknowns.
@@ -105,7 +105,7 @@ class BundleGraph {
   template <class Observation>
   void AddReprojection(Observation* observation, bool has_right, int point, Kind kind);
   double Threshold(Kind kind) const;
-  void CountEliminated(const Factor& factor);
+  void CountRejected(const Factor& factor);
 
   const BundleOptions& options_;
   BundleProblem* problem_;
@@ -129,7 +129,7 @@ class BundleGraph {
 
 template <class Observation>
 void BundleGraph::AddReprojection(Observation* observation, bool has_right, int point, Kind kind) {
-  if (observation->is_eliminated) return;
+  if (observation->is_rejected) return;
   const StereoCamera* camera = &problem_->camera;
   std::unique_ptr<ceres::CostFunction> cost;
   if (observation->point) {
@@ -149,7 +149,7 @@ void BundleGraph::AddReprojection(Observation* observation, bool has_right, int 
   const ceres::LossFunction* loss = kind == Kind::kLandmark ? &static_loss_ : &dynamic_loss_;
   const int pose = pose_blocks_[static_cast<std::size_t>(observation->frame)];
   const int index = graph_.AddFactor(std::move(cost), loss, pose, point);
-  factors_.push_back({index, kind, &observation->is_eliminated, nullptr});
+  factors_.push_back({index, kind, &observation->is_rejected, nullptr});
 }
 
 }  // namespace airdos

@@ -138,7 +138,7 @@ void BundleGraph::AddRigidity(const std::vector<Sighting>& sightings, BundleProb
       const int index =
           graph_.AddFactor(std::make_unique<RigidityFactor>(options_.rigidity_sigma_m),
                            &dynamic_loss_, a.block, b.block, length);
-      factors_.push_back({index, Kind::kRigidity, nullptr, &human->num_rigidity_eliminated});
+      factors_.push_back({index, Kind::kRigidity, nullptr, &human->num_rigidity_rejected});
       ++num_factors;
     }
     summary_.num_rigidity += num_factors;
@@ -156,7 +156,7 @@ void BundleGraph::AddMotionFactor(std::unique_ptr<ceres::CostFunction> cost, con
                                   int motion, BundleProblem::Human* human) {
   const int index = graph_.AddFactor(std::move(cost), &dynamic_loss_, pair.first.block,
                                      pair.second.block, motion);
-  factors_.push_back({index, Kind::kMotion, nullptr, &human->num_motion_eliminated});
+  factors_.push_back({index, Kind::kMotion, nullptr, &human->num_motion_rejected});
   ++summary_.num_motion;
 }
 

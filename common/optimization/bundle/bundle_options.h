@@ -63,9 +63,9 @@ struct BundleSummary {
   int num_people = 0;  ///< with factors
   int num_rigidity = 0;
   int num_motion = 0;
-  int num_rigidity_eliminated = 0;
-  int num_motion_eliminated = 0;
-  int num_reprojection_eliminated = 0;  ///< landmarks and joints
+  int num_rigidity_rejected = 0;
+  int num_motion_rejected = 0;
+  int num_reprojection_rejected = 0;  ///< landmarks and joints
 };
 
 }  // namespace airdos

@@ -62,7 +62,7 @@ struct BundleProblem {
     Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();  ///< u_left, v, u_right
     bool has_right = true;                             ///< if false, u_right is not a measurement
     double sigma_px = 1;
-    bool is_eliminated = false;  ///< if true initially, stays out; result: rejected
+    bool is_rejected = false;  ///< if true initially, stays out; result: rejected
     /// If set, the pixels are not used.
     std::optional<PointMeasurement> point = std::nullopt;
   };
@@ -78,7 +78,7 @@ struct BundleProblem {
     Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< start value, then result
     Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();
     Eigen::Matrix3d covariance_px2 = Eigen::Matrix3d::Identity();  ///< of uvu_px
-    bool is_eliminated = false;  ///< as above: its reprojection, not the joint
+    bool is_rejected = false;  ///< as above: its reprojection, not the joint
     /// If set, the pixels are not used.
     std::optional<PointMeasurement> point = std::nullopt;
   };
@@ -101,8 +101,8 @@ struct BundleProblem {
     /// Lengths known from before this window, if the track is older, and their standard deviations.
     Lengths known_length_m = Lengths(kNumSegments);
     std::vector<double> known_length_sigma_m = std::vector<double>(kNumSegments);
-    int num_rigidity_eliminated = 0;  ///< results
-    int num_motion_eliminated = 0;
+    int num_rigidity_rejected = 0;  ///< results
+    int num_motion_rejected = 0;
     std::shared_ptr<const ArticulatedModel> model = CocoBodyModel();
     std::optional<MotionForm> motion_form;    ///< if not set, the one of the options
     std::optional<MotionNoise> motion_noise;  ///< if not set, the one of the options

@@ -76,7 +76,7 @@ class HumanTracks {
     Eigen::Matrix3d covariance_px2;
     Eigen::Vector3d p_C;           ///< as triangulated, then as optimized
     Eigen::Vector3d p_C_measured;  ///< as triangulated
-    bool is_eliminated = false;    ///< by the last adjustment
+    bool is_rejected = false;      ///< by the last adjustment
   };
   /// One track.
   struct Person {

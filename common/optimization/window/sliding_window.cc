@@ -17,7 +17,7 @@ int CountNewest(const BundleProblem& problem) {
   const int newest = static_cast<int>(problem.frames.size()) - 1;
   return static_cast<int>(
       std::count_if(problem.observations.begin(), problem.observations.end(),
-                    [newest](const auto& o) { return o.frame == newest && !o.is_eliminated; }));
+                    [newest](const auto& o) { return o.frame == newest && !o.is_rejected; }));
 }
 
 HumanTracksOptions PeopleOptions(const SlidingWindowOptions& options) {
@@ -42,7 +42,7 @@ BundleSummary Combine(const BundleSummary& without_people, const BundleSummary& 
                       bool trusts_people) {
   BundleSummary summary = with_people;
   summary.num_iterations += without_people.num_iterations;
-  summary.num_reprojection_eliminated += without_people.num_reprojection_eliminated;
+  summary.num_reprojection_rejected += without_people.num_reprojection_rejected;
   if (trusts_people) return summary;
   summary.has_converged = without_people.has_converged;
   summary.initial_cost = without_people.initial_cost;

@@ -47,7 +47,7 @@ std::vector<Sighting> BodySightings(const BundleProblem& problem,
   const std::vector<int>& body = human.model->body_points;
   std::map<int, Sighting> by_frame;
   for (const BundleProblem::JointState& joint : human.joints) {
-    if (joint.is_eliminated || std::count(body.begin(), body.end(), joint.joint) == 0) continue;
+    if (joint.is_rejected || std::count(body.begin(), body.end(), joint.joint) == 0) continue;
     const auto point = Measured(problem, joint);
     if (!point) continue;
     Sighting& sighting = by_frame[joint.frame];

@@ -26,7 +26,7 @@ struct TrustOptions {
 /// count only where the static scene is weak, and only if they agree among themselves and with it:
 ///
 ///   num_static < min_static
-///   and  num_motion >= min_motion  and  num_motion_eliminated <= max_share * num_motion
+///   and  num_motion >= min_motion  and  num_motion_rejected <= max_share * num_motion
 ///   and  tr P'_t <= max_relative_sigma^2 tr P_t
 ///   and  d^T P^-1 d <= max_shift_chi2
 ///

@@ -179,8 +179,8 @@ std::vector<LandmarkId> WindowMap::Absorb(const BundleProblem& problem) {
     const LandmarkId id = problem.landmarks[static_cast<std::size_t>(result.landmark)].id;
     Frame& frame = frames_.at(frame_id);
     Observation& observation = frame.observations.at(id);
-    observation.num_eliminations = result.is_eliminated ? observation.num_eliminations + 1 : 0;
-    if (observation.num_eliminations < options_.max_rejections) continue;
+    observation.num_rejections = result.is_rejected ? observation.num_rejections + 1 : 0;
+    if (observation.num_rejections < options_.max_rejections) continue;
     frame.observations.erase(id);
     landmarks_.at(id).frames.erase(frame_id);
     ++landmarks_.at(id).num_dropped;

@@ -36,7 +36,7 @@ class WindowMap {
     Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();
     bool has_right = true;
     double sigma_px = 1;
-    int num_eliminations = 0;  ///< consecutive adjustments that rejected it
+    int num_rejections = 0;  ///< consecutive adjustments that rejected it
   };
   /// A frame in memory.
   struct Frame {

@@ -1,4 +1,4 @@
-#include "common/features/stereo_matcher.h"
+#include "common/features/feature_stereo_matcher.h"
 
 #include <algorithm>
 #include <cmath>

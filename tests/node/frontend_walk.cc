@@ -1,4 +1,4 @@
-#include "tests/node/frontend_messages.h"
+#include "tests/node/frontend_walk.h"
 
 #include <gtest/gtest.h>
 

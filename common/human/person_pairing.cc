@@ -1,4 +1,4 @@
-#include "common/human/stereo_matcher.h"
+#include "common/human/person_pairing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,7 @@ double SwapPrior(SideSwap swap) {
 double SquaredLog(double ratio) { return std::pow(std::log(ratio) / kSizeSigmaLog, 2); }
 
 // Compares the size of the person in the image with its disparity.
-double SizeCost(const StereoMatcherOptions& options, const StereoCamera& camera,
+double SizeCost(const PersonPairingOptions& options, const StereoCamera& camera,
                 const BodyKeypoints& person, double disparity_px) {
   const double px_per_m = disparity_px / camera.baseline_m;  // fx / depth
   std::vector<double> ratios;
@@ -57,7 +57,7 @@ struct JointPair {
   double confidence_right;
 };
 
-std::vector<JointPair> CommonJoints(const StereoMatcherOptions& options, const BodyKeypoints& left,
+std::vector<JointPair> CommonJoints(const PersonPairingOptions& options, const BodyKeypoints& left,
                                     const BodyKeypoints& right) {
   std::vector<JointPair> common;
   for (std::size_t joint = 0; joint < left.size(); ++joint) {
@@ -69,7 +69,7 @@ std::vector<JointPair> CommonJoints(const StereoMatcherOptions& options, const B
   return common;
 }
 
-std::optional<StereoPair> FitWithSides(const StereoMatcherOptions& options,
+std::optional<PersonPair> FitWithSides(const PersonPairingOptions& options,
                                        const StereoCamera& camera, const BodyKeypoints& left,
                                        const BodyKeypoints& right) {
   const std::vector<JointPair> common = CommonJoints(options, left, right);
@@ -93,7 +93,7 @@ std::optional<StereoPair> FitWithSides(const StereoMatcherOptions& options,
         std::pow(joint.disparity_px - disparity_px, 2) / (variance + extent_px * extent_px);
     sum += std::min(error, options.max_joint_squared_sigmas);
   }
-  StereoPair pair;
+  PersonPair pair;
   pair.disparity_px = disparity_px;
   pair.cost = sum / (2 * static_cast<double>(common.size())) +
               SizeCost(options, camera, left, disparity_px);
@@ -102,12 +102,12 @@ std::optional<StereoPair> FitWithSides(const StereoMatcherOptions& options,
 
 }  // namespace
 
-std::optional<StereoPair> FitStereoPair(const StereoMatcherOptions& options,
+std::optional<PersonPair> FitPersonPair(const PersonPairingOptions& options,
                                         const StereoCamera& camera, const BodyKeypoints& left,
                                         const BodyKeypoints& right) {
-  std::optional<StereoPair> best;
+  std::optional<PersonPair> best;
   for (const SideSwap swap : kSideSwaps) {
-    std::optional<StereoPair> pair = FitWithSides(options, camera, left, SwapSides(right, swap));
+    std::optional<PersonPair> pair = FitWithSides(options, camera, left, SwapSides(right, swap));
     if (!pair) continue;
     pair->right_swap = swap;
     pair->cost += SwapPrior(swap);
@@ -116,16 +116,16 @@ std::optional<StereoPair> FitStereoPair(const StereoMatcherOptions& options,
   return best;
 }
 
-StereoMatching MatchStereo(const StereoMatcherOptions& options, const StereoCamera& camera,
-                           const std::vector<BodyKeypoints>& left,
-                           const std::vector<BodyKeypoints>& right) {
+PersonPairing PairPeople(const PersonPairingOptions& options, const StereoCamera& camera,
+                         const std::vector<BodyKeypoints>& left,
+                         const std::vector<BodyKeypoints>& right) {
   Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(left.size()),
                                                    static_cast<Eigen::Index>(right.size()),
                                                    std::numeric_limits<double>::infinity());
-  std::vector<std::vector<StereoPair>> fits(left.size(), std::vector<StereoPair>(right.size()));
+  std::vector<std::vector<PersonPair>> fits(left.size(), std::vector<PersonPair>(right.size()));
   for (std::size_t l = 0; l < left.size(); ++l) {
     for (std::size_t r = 0; r < right.size(); ++r) {
-      const std::optional<StereoPair> fit = FitStereoPair(options, camera, left[l], right[r]);
+      const std::optional<PersonPair> fit = FitPersonPair(options, camera, left[l], right[r]);
       if (!fit) continue;
       fits[l][r] = *fit;
       fits[l][r].left = static_cast<int>(l);
@@ -133,22 +133,22 @@ StereoMatching MatchStereo(const StereoMatcherOptions& options, const StereoCame
       cost(static_cast<Eigen::Index>(l), static_cast<Eigen::Index>(r)) = fit->cost;
     }
   }
-  StereoMatching matching;
+  PersonPairing pairing;
   std::vector<bool> is_right_paired(right.size(), false);
   const std::vector<std::optional<int>> partner = Assign(cost, options.max_mean_squared_sigmas);
   for (std::size_t l = 0; l < left.size(); ++l) {
     if (!partner[l]) {
-      matching.unpaired_left.push_back(static_cast<int>(l));
+      pairing.unpaired_left.push_back(static_cast<int>(l));
       continue;
     }
     const std::size_t r = static_cast<std::size_t>(*partner[l]);
-    matching.pairs.push_back(fits[l][r]);
+    pairing.pairs.push_back(fits[l][r]);
     is_right_paired[r] = true;
   }
   for (std::size_t r = 0; r < right.size(); ++r) {
-    if (!is_right_paired[r]) matching.unpaired_right.push_back(static_cast<int>(r));
+    if (!is_right_paired[r]) pairing.unpaired_right.push_back(static_cast<int>(r));
   }
-  return matching;
+  return pairing;
 }
 
 }  // namespace airdos

@@ -1,5 +1,5 @@
-#ifndef AIRDOS_COMMON_HUMAN_STEREO_MATCHER_H_
-#define AIRDOS_COMMON_HUMAN_STEREO_MATCHER_H_
+#ifndef AIRDOS_COMMON_HUMAN_PERSON_PAIRING_H_
+#define AIRDOS_COMMON_HUMAN_PERSON_PAIRING_H_
 
 #include <optional>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace airdos {
 
-struct StereoMatcherOptions {
+struct PersonPairingOptions {
   double min_confidence = 0.1;  ///< keypoints below it are not looked at
   int min_joints = 4;           ///< that both images must see of a person
   double min_depth_m = 0.5;
@@ -22,8 +22,8 @@ struct StereoMatcherOptions {
   KeypointNoise noise;
 };
 
-/// The same person in both images: indices into the lists given to MatchStereo().
-struct StereoPair {
+/// The same person in both images: indices into the lists given to PairPeople().
+struct PersonPair {
   int left = 0;
   int right = 0;
   SideSwap right_swap = SideSwap::kNone;  ///< to apply to the right one so that sides agree
@@ -31,8 +31,8 @@ struct StereoPair {
   double cost = 0;
 };
 
-struct StereoMatching {
-  std::vector<StereoPair> pairs;  ///< sorted by left
+struct PersonPairing {
+  std::vector<PersonPair> pairs;  ///< sorted by left
   std::vector<int> unpaired_left;
   std::vector<int> unpaired_right;
 };
@@ -45,16 +45,16 @@ struct StereoMatching {
 ///   sides,
 /// and the size term compares the limbs' lengths in the image with what kSegments lets expect at
 /// that depth. All exchanges of sides are tried; the best is returned.
-std::optional<StereoPair> FitStereoPair(const StereoMatcherOptions& options,
+std::optional<PersonPair> FitPersonPair(const PersonPairingOptions& options,
                                         const StereoCamera& camera, const BodyKeypoints& left,
                                         const BodyKeypoints& right);
 
 /// Pairs the people of a rectified pair of images, who come in no order and partly in one image
 /// only, so that the sum of costs is least; pairs above max_mean_squared_sigmas are not made.
-StereoMatching MatchStereo(const StereoMatcherOptions& options, const StereoCamera& camera,
-                           const std::vector<BodyKeypoints>& left,
-                           const std::vector<BodyKeypoints>& right);
+PersonPairing PairPeople(const PersonPairingOptions& options, const StereoCamera& camera,
+                         const std::vector<BodyKeypoints>& left,
+                         const std::vector<BodyKeypoints>& right);
 
 }  // namespace airdos
 
-#endif  // AIRDOS_COMMON_HUMAN_STEREO_MATCHER_H_
+#endif  // AIRDOS_COMMON_HUMAN_PERSON_PAIRING_H_

@@ -16,7 +16,7 @@ const StereoCamera kCamera{640, 480, 500, 470, 310, 250, 0.3};
 constexpr double kNone = 1e9;
 constexpr double kExact = 1e-6;
 
-/// No kind is eliminated.
+/// No kind is rejected.
 BundleOptions Options() {
   BundleOptions options;
   options.max_iterations = 60;
@@ -62,8 +62,8 @@ struct Counts {
 };
 
 Counts CountsOf(const BundleSummary& summary) {
-  return {summary.num_reprojection_eliminated, summary.num_rigidity_eliminated,
-          summary.num_motion_eliminated};
+  return {summary.num_reprojection_rejected, summary.num_rigidity_rejected,
+          summary.num_motion_rejected};
 }
 
 constexpr Counts kNobody = {0, 0, 0};
@@ -81,16 +81,16 @@ BundleProblem WrongLandmark(double sigmas) {
   return problem;
 }
 
-TEST(BundleElimination, ALandmark) {
+TEST(BundleRejection, ALandmark) {
   BundleOptions options = Options();
   options.reject_static_sigmas = 4;
   BundleProblem problem = WrongLandmark(3.99);
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
-  EXPECT_FALSE(problem.observations[1].is_eliminated);
+  EXPECT_FALSE(problem.observations[1].is_rejected);
   problem = WrongLandmark(4.01);
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), (Counts{1, 0, 0}));
-  EXPECT_FALSE(problem.observations[0].is_eliminated);
-  EXPECT_TRUE(problem.observations[1].is_eliminated);
+  EXPECT_FALSE(problem.observations[0].is_rejected);
+  EXPECT_TRUE(problem.observations[1].is_rejected);
   problem = WrongLandmark(4.01);
   options = Options();
   options.reject_joint_sigmas = options.reject_rigidity_sigmas = options.reject_motion_sigmas = 4;
@@ -108,7 +108,7 @@ BundleProblem WrongJoint(double sigmas) {
   return problem;
 }
 
-TEST(BundleElimination, AJoint) {
+TEST(BundleRejection, AJoint) {
   BundleOptions options = Options();
   options.rigidity_sigma_m = options.segment_length_sigma_m = kExact;
   options.reject_joint_sigmas = 4;
@@ -116,9 +116,9 @@ TEST(BundleElimination, AJoint) {
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
   problem = WrongJoint(4.01);
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), (Counts{1, 0, 0}));
-  EXPECT_FALSE(problem.humans[0].joints[0].is_eliminated);
-  EXPECT_TRUE(problem.humans[0].joints[1].is_eliminated);
-  EXPECT_EQ(problem.humans[0].num_rigidity_eliminated, 0);
+  EXPECT_FALSE(problem.humans[0].joints[0].is_rejected);
+  EXPECT_TRUE(problem.humans[0].joints[1].is_rejected);
+  EXPECT_EQ(problem.humans[0].num_rigidity_rejected, 0);
   options.reject_joint_sigmas = kNone;
   options.reject_static_sigmas = options.reject_rigidity_sigmas = options.reject_motion_sigmas = 4;
   problem = WrongJoint(4.01);
@@ -138,7 +138,7 @@ BundleProblem WrongLength(double sigmas) {
   return problem;
 }
 
-TEST(BundleElimination, ALength) {
+TEST(BundleRejection, ALength) {
   BundleOptions options = Options();
   options.segment_length_sigma_m = kExact;
   options.reject_rigidity_sigmas = 4;
@@ -146,12 +146,12 @@ TEST(BundleElimination, ALength) {
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
   problem = WrongLength(4.01);
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), (Counts{0, 1, 0}));
-  EXPECT_EQ(problem.humans[0].num_rigidity_eliminated, 0);
-  EXPECT_EQ(problem.humans[1].num_rigidity_eliminated, 1);
-  EXPECT_EQ(problem.humans[1].num_motion_eliminated, 0);
+  EXPECT_EQ(problem.humans[0].num_rigidity_rejected, 0);
+  EXPECT_EQ(problem.humans[1].num_rigidity_rejected, 1);
+  EXPECT_EQ(problem.humans[1].num_motion_rejected, 0);
   // Counted anew each time.
   SolveBundle(options, &problem);
-  EXPECT_EQ(problem.humans[1].num_rigidity_eliminated, 1);
+  EXPECT_EQ(problem.humans[1].num_rigidity_rejected, 1);
   options.reject_rigidity_sigmas = kNone;
   options.reject_static_sigmas = options.reject_joint_sigmas = options.reject_motion_sigmas = 4;
   problem = WrongLength(4.01);
@@ -171,7 +171,7 @@ BundleProblem WrongStep(double sigmas, double joint_sigma_m = kExact) {
   return problem;
 }
 
-TEST(BundleElimination, AMotion) {
+TEST(BundleRejection, AMotion) {
   BundleOptions options = Options();
   options.reject_motion_sigmas = 4;
   BundleProblem problem = WrongStep(3.99);
@@ -182,8 +182,8 @@ TEST(BundleElimination, AMotion) {
   problem = WrongStep(4.01);
   summary = SolveBundle(options, &problem);
   EXPECT_EQ(CountsOf(summary), (Counts{0, 0, 1}));
-  EXPECT_EQ(problem.humans[0].num_motion_eliminated, 1);
-  EXPECT_EQ(problem.humans[0].num_rigidity_eliminated, 0);
+  EXPECT_EQ(problem.humans[0].num_motion_rejected, 1);
+  EXPECT_EQ(problem.humans[0].num_rigidity_rejected, 0);
   EXPECT_NEAR(problem.humans[0].motions[0].motion_W.translation.x(), 0, 1e-5) << "solved again";
   EXPECT_NEAR(summary.initial_cost, 0.5 * (4.01 * 4.01 + 3 * std::pow(4.01 / 3, 2)), 1e-6);
   EXPECT_NEAR(summary.final_cost, 0, 1e-6);
@@ -208,7 +208,7 @@ TEST(BundleElimination, AMotion) {
   EXPECT_EQ(CountsOf(SolveBundle(options, &problem)), kNobody);
 }
 
-TEST(BundleElimination, TheKernelKeepsOneWildJointFromCarryingTheRest) {
+TEST(BundleRejection, TheKernelKeepsOneWildJointFromCarryingTheRest) {
   BundleOptions options = Options();
   options.max_iterations_after_rejection = 0;
   BundleProblem problem = WrongStep(30);  // 2 m
@@ -218,7 +218,7 @@ TEST(BundleElimination, TheKernelKeepsOneWildJointFromCarryingTheRest) {
   EXPECT_NEAR(problem.humans[0].motions[0].motion_W.translation.x(), 0.05 * 2 / 3, 1e-4);
 }
 
-TEST(BundleElimination, WhatOnlyFixedFramesSeeStaysWhereItIs) {
+TEST(BundleRejection, WhatOnlyFixedFramesSeeStaysWhereItIs) {
   BundleProblem problem = Empty();
   problem.frames.push_back({FrameId{5}, 0.2, {ExpSo3({0.1, 0.1, 0.3}), {1.4, 2, 3}}, false});
   const Se3 start = problem.frames[2].T_W_C, fixed = problem.frames[1].T_W_C;
@@ -253,7 +253,7 @@ TEST(BundleElimination, WhatOnlyFixedFramesSeeStaysWhereItIs) {
   EXPECT_FALSE(SolveBundle(options, &problem).newest_covariance);
 }
 
-TEST(BundleElimination, SomebodyOfWhomNothingIsSeenDoesNotCount) {
+TEST(BundleRejection, SomebodyOfWhomNothingIsSeenDoesNotCount) {
   BundleProblem problem = WrongStep(0);
   problem.humans.resize(3);
   const BundleSummary summary = SolveBundle(Options(), &problem);

@@ -1,5 +1,5 @@
-#ifndef AIRDOS_TESTS_NODE_FRONTEND_MESSAGES_H_
-#define AIRDOS_TESTS_NODE_FRONTEND_MESSAGES_H_
+#ifndef AIRDOS_TESTS_NODE_FRONTEND_WALK_H_
+#define AIRDOS_TESTS_NODE_FRONTEND_WALK_H_
 
 #include <cstdint>
 #include <opencv2/core.hpp>
@@ -68,4 +68,4 @@ FrontendOptions WithoutFeedback();
 
 }  // namespace airdos
 
-#endif  // AIRDOS_TESTS_NODE_FRONTEND_MESSAGES_H_
+#endif  // AIRDOS_TESTS_NODE_FRONTEND_WALK_H_
