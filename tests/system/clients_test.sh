@@ -36,6 +36,18 @@ nothing_of_ours_leaks() {
   ! grep -rn 'AIRDOS_CHECK\|"common/\|"processes/' "$prefix/include" || fail "an installed header needs our source tree"
 }
 
+# Each sentence of the contract names the test that holds it.
+the_contract_names_tests_that_exist() {
+  local name
+  (($(grep -cE '`[A-Z][A-Za-z]+[.][A-Z]' "$source_dir/docs/clients.md") > 40)) || fail "docs/clients.md names few tests"
+  ! grep -n "untested" "$source_dir/docs/clients.md" || fail "docs/clients.md has a sentence without a test"
+  cat "$source_dir"/tests/*/*.cc "$source_dir"/tests/unit/*/*.cc | tr -d ' \n' > "$work/tests"
+  # shellcheck disable=SC2016  # the page's backquotes
+  for name in $(grep -oE '`[A-Z][A-Za-z0-9]+[.][A-Z][A-Za-z0-9]+`' "$source_dir/docs/clients.md" | tr -d '`' | sort -u); do
+    grep -qE "TEST(_F|_P)?\(${name/./,}\)" "$work/tests" || fail "docs/clients.md names $name, which is no test"
+  done
+}
+
 components_are_apart() {
   local component file
   for component in runtime dev doc; do
@@ -199,6 +211,7 @@ if [[ -n ${CLIENTS_TEST_WORK:-} ]]; then
 fi
 cmake --install "$build" --prefix "$prefix" > "$work/install.log" 2>&1 || fail "$(tail -n 5 "$work/install.log")"
 nothing_of_ours_leaks
+the_contract_names_tests_that_exist
 components_are_apart
 documented_commands_build_everything
 export PYTHONPATH=$prefix/lib/python3/dist-packages
