@@ -158,7 +158,7 @@ show_news() {
     last=$(wc -l < "$run_dir/$name.log")
     ((last >= first)) || continue
     lines_shown[$name]=$last
-    sed -n "$first,$last{/: warning: \\|: error: \\|: nothing on \\|: rejected /p}" "$run_dir/$name.log" >&2
+    sed -n "$first,$last{/: warning: \\|: error: /p}" "$run_dir/$name.log" >&2
   done
 }
 
@@ -169,7 +169,7 @@ finish() {
     if [[ -n ${pids[$name]:-} ]]; then stop "$name"; fi
   done
   show_news
-  sed -n 's/^airdos-optimizer: \(poses: .*\)/\1/p' "$run_dir/optimizer.log" 2> /dev/null | tail -n 1
+  sed -n 's/^[^ ]* airdos-optimizer: info: \(poses: .*\)/\1/p' "$run_dir/optimizer.log" 2> /dev/null | tail -n 1
   for name in "${!exit_codes[@]}"; do
     say "$name: exit code ${exit_codes[$name]}"
     ((exit_codes[$name] == 0)) || bad=1

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,18 +40,18 @@ std::optional<UnfinishedMap> FindUnfinishedMap(const std::string& directory, con
 /// Whether there is a file that is no closed map.
 bool IsUnfinished(const std::string& path);
 
-/// Gives the map another name, if there is one. Throws InputError.
-void KeepMap(const std::string& path);
+/// Takes a line that people are to read.
+using SayLine = std::function<void(const std::string&)>;
+
+/// Gives the map another name, if there is one, and says so. Throws InputError.
+void KeepMap(const std::string& path, const SayLine& say);
 
 /// A run that was cut short must not be lost to the next one in the same place: its maps, the
 /// closed ones of its earlier sessions, too, get other names.
-void KeepMapsOfACutRun(const std::string& directory);
-
-/// A line of the recorder on stderr; an empty one is left out.
-void Say(const std::string& line);
+void KeepMapsOfACutRun(const std::string& directory, const SayLine& say);
 
 /// Says which map, if one lies there, is replaced.
-void SayWhatIsReplaced(const std::string& path);
+void SayWhatIsReplaced(const std::string& path, const SayLine& say);
 
 }  // namespace airdos
 

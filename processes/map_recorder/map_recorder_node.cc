@@ -84,6 +84,10 @@ bool SelectAll(const std::string&, const std::string&) { return true; }
 
 }  // namespace
 
+void MapRecorderOptions::SayOnStderr(const std::string& line) {
+  std::fprintf(stderr, "map_recorder: %s\n", line.c_str());
+}
+
 MapRecorderNode::MapRecorderNode(const MapRecorderOptions& options)
     : FrameNode("map_recorder"),
       options_(options),
@@ -102,7 +106,7 @@ MapRecorderNode::~MapRecorderNode() {
   try {
     Finish();
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "map_recorder: %s\n", error.what());
+    options_.say(std::string("error: ") + error.what());
   }
 }
 
@@ -127,7 +131,7 @@ void MapRecorderNode::StartSession(const Header& header) {
   const bool is_first = num_sessions_ == 1;
   if (!is_first || !Resume(header)) {
     if (is_first) ReplaceEarlierResults();
-    if (IsUnfinished(PathOf(kMapName))) KeepMap(PathOf(kMapName));
+    if (IsUnfinished(PathOf(kMapName))) KeepMap(PathOf(kMapName), options_.say);
     OpenMap(0);
     num_live_ = 0;
     Append(HeadChunk(session_, std::string("airdos map_recorder ") + kVersion));
@@ -137,12 +141,12 @@ void MapRecorderNode::StartSession(const Header& header) {
 }
 
 void MapRecorderNode::ReplaceEarlierResults() {
-  KeepMapsOfACutRun(options_.directory);
+  KeepMapsOfACutRun(options_.directory, options_.say);
   for (int number = 1; fs::exists(SessionDirectory(options_.directory, number)); ++number) {
-    SayWhatIsReplaced(SessionDirectory(options_.directory, number) + "/" + kMapName);
+    SayWhatIsReplaced(SessionDirectory(options_.directory, number) + "/" + kMapName, options_.say);
   }
   const std::string what = SayReplaced(results_.RemoveEarlier(SelectAll));
-  if (!what.empty()) Say(options_.directory + ": " + what);
+  if (!what.empty()) options_.say(options_.directory + ": " + what);
 }
 
 void MapRecorderNode::OpenMap(std::int64_t num_bytes) {
@@ -328,7 +332,7 @@ void MapRecorderNode::CloseSession() {
     ExportMap(map, prefix_, prefix_.empty() ? kExportGroup : kGroup, &results_);
     for (const std::string& name : ExportNames(options_.directory, prefix_)) {
       if (results_.IsListed(name) || !fs::exists(results_.PathOf(name))) continue;
-      Say(results_.PathOf(name) + ": was there before and is not of this run");  // --force
+      options_.say(results_.PathOf(name) + ": was there before and is not of this run");  // --force
     }
   }
   results_.Finish();

@@ -2,6 +2,7 @@
 #define AIRDOS_PROCESSES_MAP_RECORDER_MAP_RECORDER_NODE_H_
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -24,6 +25,10 @@ struct MapRecorderOptions {
   int chunk_frames = 10;      ///< frames a chunk; a kill loses at most one chunk
   bool export_at_end = true;  ///< also write the exports of common/map/map_export.h
   OutputRules rules;          ///< what may be replaced; not in the configuration
+  /// Takes what people are to read; by default it goes to stderr as "map_recorder: ...".
+  std::function<void(const std::string&)> say = SayOnStderr;
+
+  static void SayOnStderr(const std::string& line);
 };
 
 /// STATE_ESTIMATE and MAP_UPDATE of one frame.
@@ -45,7 +50,7 @@ struct MapRecorderInputs {
 /// again as long as the optimizer has them in its window. Else it is kept under another name
 /// (map.airdos.unfinished_1), and so are the maps of that run's earlier sessions
 /// (map.airdos.closed_1). The maps of a run that came to its end are replaced, and everything else
-/// that it left in the folder goes when the first frame comes; both are said on stderr. What was
+/// that it left in the folder goes when the first frame comes; both are said. What was
 /// not written by a recorder, an export or a replay is never touched (see OutputFolder): where a
 /// file would get into its way, this is said before the first frame.
 ///
@@ -69,7 +74,7 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   /// Locks the folder until this goes. Throws InputError where it was not named, cannot be made or
   /// written to, another run is writing there, or files of somebody else are in the way.
   explicit MapRecorderNode(const MapRecorderOptions& options);
-  /// Closes the map if Finish() was not called; a failure is then said on stderr.
+  /// Closes the map if Finish() was not called; a failure is then said.
   ~MapRecorderNode() override;
 
   /// Writes the last chunks and the exports. Nothing where no frame came. Throws InputError naming

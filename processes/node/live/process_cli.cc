@@ -8,6 +8,7 @@
 #include "common/util/output_files.h"
 #include "common/util/suggestion.h"
 #include "processes/node/live/lcm_transport.h"
+#include "processes/node/live/process_log.h"
 
 namespace airdos {
 
@@ -18,6 +19,12 @@ std::string ConfigFolder() {
       program.parent_path().parent_path() / "share" / "airdos" / "config";
   if (std::filesystem::is_directory(installed, ignored)) return installed.string();
   return AIRDOS_SOURCE_CONFIG_DIR;
+}
+
+void AddLogLevel(std::string* level, CLI::App* app) {
+  app->add_option("--log-level", *level, "Say on stderr what is at least as grave")
+      ->check(OneOf(LogLevelNames()))
+      ->capture_default_str();
 }
 
 void AddCommonOptions(const std::string& config_name, CLI::App* app, CommonArguments* arguments) {
@@ -37,6 +44,7 @@ void AddCommonOptions(const std::string& config_name, CLI::App* app, CommonArgum
   AddFile("--resolved-config", &arguments->resolved_config,
           "File to write all options to with the values in force", app);
   AddForce(&arguments->force, app);
+  AddLogLevel(&arguments->log_level, app);
 }
 
 const std::vector<std::string>& ConfigNames() {

@@ -18,11 +18,15 @@ struct CommonArguments {
   std::vector<std::string> overrides;  ///< "section.key=value", or with "process:" before it
   std::string resolved_config;         ///< file to write; empty: none
   bool force = false;                  ///< see OutputRules
+  std::string log_level = "info";      ///< one of LogLevelNames()
 };
 
-/// Adds --lcm-url, --config, --set, --resolved-config and --force; the defaults are those of this
-/// installation. `config_name` is the name of the process' file in the config folder, without
-/// .yaml.
+/// --log-level, of every process.
+void AddLogLevel(std::string* level, CLI::App* app);
+
+/// Adds --lcm-url, --config, --set, --resolved-config, --force and --log-level; the defaults are
+/// those of this installation. `config_name` is the name of the process' file in the config folder,
+/// without .yaml.
 void AddCommonOptions(const std::string& config_name, CLI::App* app, CommonArguments* arguments);
 
 /// The folder with the YAML files: ../share/airdos/config next to an installed program, else that
