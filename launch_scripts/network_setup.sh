@@ -1,10 +1,12 @@
 #!/bin/bash
 # Sets this machine up for LCM's multicast, or only checks it.
 #
-#   network_setup.sh                 loopback only: all processes on this machine
-#   network_setup.sh --interface IF  multicast through network interface IF, to spread processes over hosts (use ?ttl=1 in --lcm-url)
-#   network_setup.sh --check         changes nothing; without --interface it looks at the one that LCM's messages go through,
-#                                    as airdos-doctor does, whose verdict is the same
+# Usage: launch_scripts/network_setup.sh [--interface IF] [--check]
+#   --interface IF  multicast through network interface IF, to spread processes over hosts (use ?ttl=1 in --lcm-url);
+#                   default: the loopback interface, for processes on this machine alone
+#   --check         changes nothing; without --interface it looks at the one that LCM's messages go through,
+#                   as airdos-doctor does, whose verdict is the same
+#   --help          this text
 #
 # Three things: the interface is up and has its multicast flag, 224.0.0.0/4 has a route through it, and sockets may ask for a
 # receive buffer of 4 MiB (net.core.rmem_max), which lossless images need. Exit code 0: all is well (a buffer that takes messages
@@ -18,8 +20,6 @@ readonly LCM_ADDRESS=239.255.76.67
 interface=
 check_only=false
 
-usage() { sed -n '2,/^set -u/{/^#/s/^# \{0,1\}//p}' "$0"; }
-
 while [ $# -gt 0 ]; do
   case $1 in
     --check) check_only=true ;;
@@ -27,8 +27,11 @@ while [ $# -gt 0 ]; do
       [ $# -ge 2 ] || { echo "network_setup.sh: --interface needs a name" >&2; exit 2; }
       interface=$2
       shift ;;
-    -h|--help) usage; exit 0 ;;
-    --version) . "$(dirname "$0")/common.sh" --version ;; # which prints it and ends
+    -h|--help|--version)
+      # shellcheck source=launch_scripts/common.sh
+      . "$(dirname "$(readlink -f "$0")")/common.sh" "$1" # which prints a version and ends
+      print_help
+      exit 0 ;;
     *) echo "network_setup.sh: unknown argument '$1'" >&2; exit 2 ;;
   esac
   shift

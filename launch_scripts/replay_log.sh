@@ -12,7 +12,7 @@
 # they have worked on already, the next ones get new numbers, from airdos-stereo-player.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 log='' speed=1 run_dir=$AIRDOS_RUNS/latest check=yes
 while (($# > 0)); do

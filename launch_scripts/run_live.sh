@@ -21,7 +21,7 @@
 # Exit 0 if all processes ended well; 1 if one did not, or if no frame got a pose; 2 for a wrong option or input.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 readonly PROCESSES=(frontend human-tracker optimizer map-recorder)
 readonly READY_DEADLINE_S=30
@@ -100,7 +100,7 @@ if [[ $is_inside == no ]]; then
   mkdir -p "$AIRDOS_RUNS"
   ln -sfn "$(realpath "$run_dir")" "$AIRDOS_RUNS/latest"
   if [[ $host_network == yes ]]; then
-    "$(dirname "$0")/network_setup.sh" --check || die "--host-network: the network is not fit for LCM (see above)"
+    "$AIRDOS_SCRIPTS/network_setup.sh" --check || die "--host-network: the network is not fit for LCM (see above)"
   else
     run_in_new_network "$0" "${original_arguments[@]}" --inside
   fi

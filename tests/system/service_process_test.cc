@@ -98,7 +98,7 @@ TEST_P(ServiceProcessTest, TheJournalGetsWrongUseAsAnError) {
   EXPECT_EQ(process->Wait(kDeadline_s), 2);
   const std::string errors = process->Errors();
   EXPECT_EQ(errors.find("<3>" + GetParam() + ": "), 0u) << errors;
-  EXPECT_NE(errors.find("did you mean 'warning'"), std::string::npos) << errors;
+  EXPECT_NE(errors.find("'warn' is none of error, warning"), std::string::npos) << errors;
   EXPECT_EQ(errors.find('\n'), errors.size() - 1) << errors;
 }
 
