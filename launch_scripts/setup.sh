@@ -24,7 +24,7 @@ AIRDOS_PACKAGES=(
 AIRDOS_PACKAGING_PACKAGES=(dpkg-dev file help2man)
 # What test.sh takes besides: the fuzz targets (fuzz.sh) are built with clang's libFuzzer.
 # shellcheck disable=SC2034
-AIRDOS_TEST_PACKAGES=(clang libclang-rt-14-dev "${AIRDOS_PACKAGING_PACKAGES[@]}" lintian man-db systemd)
+AIRDOS_TEST_PACKAGES=(clang libclang-rt-14-dev "${AIRDOS_PACKAGING_PACKAGES[@]}" lintian systemd)
 
 # The tiers of tests that run under sanitizers.
 readonly AIRDOS_SANITIZED_TIERS='unit numeric node'
