@@ -2,18 +2,19 @@
 # Shared by the launch scripts: the project's folder, messages, network namespaces. Source it.
 
 AIRDOS_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-# In the source tree or installed (share/airdos/scripts).
+AIRDOS_SCRIPTS=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+# In the source tree or installed (share/airdos/scripts, with links in bin/).
 if [[ -e $AIRDOS_ROOT/CMakeLists.txt ]]; then
   AIRDOS_BIN=${AIRDOS_BIN:-$AIRDOS_ROOT/build/bin}
   AIRDOS_RUNS=$AIRDOS_ROOT/logs/runs
 else
   AIRDOS_BIN=${AIRDOS_BIN:-$AIRDOS_ROOT/../../bin}
-  AIRDOS_RUNS=${XDG_STATE_HOME:-$HOME/.local/state}/airdos/runs
+  AIRDOS_RUNS=${XDG_STATE_HOME:-${HOME:-}/.local/state}/airdos/runs
 fi
 AIRDOS_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=0'
 # The channels of the camera and the detectors; a log may contain more.
 AIRDOS_CAMERA_CHANNELS='^(CAMERA_LEFT|CAMERA_RIGHT|CALIBRATION|PERSON_KEYPOINTS_LEFT|PERSON_KEYPOINTS_RIGHT|PERSON_MASK|GROUND_TRUTH)$'
-readonly AIRDOS_ROOT AIRDOS_BIN AIRDOS_RUNS AIRDOS_DEFAULT_URL AIRDOS_CAMERA_CHANNELS
+readonly AIRDOS_ROOT AIRDOS_SCRIPTS AIRDOS_BIN AIRDOS_RUNS AIRDOS_DEFAULT_URL AIRDOS_CAMERA_CHANNELS
 
 readonly EXIT_BAD_INPUT=2
 
@@ -31,9 +32,18 @@ die_usage() {
   exit "$EXIT_BAD_INPUT"
 }
 
-# Prints the comment at the top of the script as its help.
+# Prints the comment at the top of the script as its help, in the form of the programs' help. An installed script uses its
+# installed name and folders.
 print_help() {
-  sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"
+  local is_installed=yes
+  if [[ -e $AIRDOS_ROOT/CMakeLists.txt ]]; then is_installed=no; fi
+  sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0" | sed 's/^Usage: .*/&\n\nOptions:/' |
+    if [[ $is_installed == yes ]]; then
+      sed "s|launch_scripts/[a-z_]*\.sh|$(basename "$0")|g; s|logs/runs|${AIRDOS_RUNS/#"${HOME:-}"/\~}|g
+        s|run_live\.sh|airdos-run-live|g; s|replay_log\.sh|airdos-replay-log|g; s|network_setup\.sh|airdos-network-setup|g"
+    else
+      cat
+    fi
   echo "With --version as its only argument it prints its name, version and commit."
 }
 

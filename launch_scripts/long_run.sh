@@ -91,7 +91,7 @@ trap - EXIT
 [[ -s $run_dir/memory.tsv ]] || die "nothing was measured: see $run_dir/run_live.log"
 
 # number PROCESS REGEX: the number after REGEX in a process' final messages; the sum if there are several.
-number() { sed -n "s/^airdos-$1: .*$2\([0-9.]*\).*/\1/p" "$run_dir/$1.log" | awk '{ sum += $1 } END { print sum + 0 }'; }
+number() { sed -n "s/^[^ ]* airdos-$1: info: .*$2\([0-9.]*\).*/\1/p" "$run_dir/$1.log" | awk '{ sum += $1 } END { print sum + 0 }'; }
 
 # growth COLUMN: MB at the start and at the end, and growth in %.
 growth() {

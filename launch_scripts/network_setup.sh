@@ -1,10 +1,12 @@
 #!/bin/bash
 # Sets up this machine for LCM's multicast, or only checks it.
 #
-#   network_setup.sh                 loopback only: all processes on this machine
-#   network_setup.sh --interface IF  multicast through interface IF, to distribute processes over hosts (use ?ttl=1 in --lcm-url)
-#   network_setup.sh --check         changes nothing; without --interface it checks the one that LCM's messages are sent through,
-#                                    like airdos-doctor, which comes to the same conclusion
+# Usage: launch_scripts/network_setup.sh [--interface IF] [--check]
+#   --interface IF  multicast through network interface IF, to distribute processes over hosts (use ?ttl=1 in --lcm-url);
+#                   default: the loopback interface, for processes on this machine only
+#   --check         changes nothing; without --interface it checks the one that LCM's messages are sent
+#                   through, like airdos-doctor, which comes to the same conclusion
+#   --help          this text
 #
 # Three things are needed: the interface is up and has its multicast flag, 224.0.0.0/4 is routed through it, and sockets may have
 # a receive buffer of 4 MiB (net.core.rmem_max), as lossless images require. Exit code 0: everything is fine (a buffer that only
@@ -18,8 +20,6 @@ readonly LCM_ADDRESS=239.255.76.67
 interface=
 check_only=false
 
-usage() { sed -n '2,/^set -u/{/^#/s/^# \{0,1\}//p}' "$0"; }
-
 while [ $# -gt 0 ]; do
   case $1 in
     --check) check_only=true ;;
@@ -27,10 +27,11 @@ while [ $# -gt 0 ]; do
       [ $# -ge 2 ] || { echo "network_setup.sh: --interface needs a name" >&2; exit 2; }
       interface=$2
       shift ;;
-    -h|--help) usage; exit 0 ;;
-    --version)
+    -h|--help|--version)
       # shellcheck source=launch_scripts/common.sh
-      . "$(dirname "$0")/common.sh" --version ;; # prints the version and exits
+      . "$(dirname "$(readlink -f "$0")")/common.sh" "$1" # prints the version and exits
+      print_help
+      exit 0 ;;
     *) echo "network_setup.sh: unknown argument '$1'" >&2; exit 2 ;;
   esac
   shift

@@ -12,7 +12,7 @@
 # Since the processes ignore frames that they have already processed, airdos-stereo-player plays it with new numbers after that.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 log='' speed=1 run_dir=$AIRDOS_RUNS/latest check=yes
 while (($# > 0)); do

@@ -21,7 +21,7 @@
 # Exit code 0 if all processes ended well; 1 if one did not, or if no frame got a pose; 2 for a wrong option or input.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 readonly PROCESSES=(frontend human-tracker optimizer map-recorder)
 readonly READY_DEADLINE_S=30
@@ -100,7 +100,7 @@ if [[ $is_inside == no ]]; then
   mkdir -p "$AIRDOS_RUNS"
   ln -sfn "$(realpath "$run_dir")" "$AIRDOS_RUNS/latest"
   if [[ $host_network == yes ]]; then
-    "$(dirname "$0")/network_setup.sh" --check || die "--host-network: the network is not ready for LCM (see above)"
+    "$AIRDOS_SCRIPTS/network_setup.sh" --check || die "--host-network: the network is not ready for LCM (see above)"
   else
     run_in_new_network "$0" "${original_arguments[@]}" --inside
   fi
@@ -158,7 +158,7 @@ show_news() {
     last=$(wc -l < "$run_dir/$name.log")
     ((last >= first)) || continue
     lines_shown[$name]=$last
-    sed -n "$first,$last{/: warning: \\|: error: \\|: nothing on \\|: rejected /p}" "$run_dir/$name.log" >&2
+    sed -n "$first,$last{/: warning: \\|: error: /p}" "$run_dir/$name.log" >&2
   done
 }
 
@@ -169,7 +169,7 @@ finish() {
     if [[ -n ${pids[$name]:-} ]]; then stop "$name"; fi
   done
   show_news
-  sed -n 's/^airdos-optimizer: \(poses: .*\)/\1/p' "$run_dir/optimizer.log" 2> /dev/null | tail -n 1
+  sed -n 's/^[^ ]* airdos-optimizer: info: \(poses: .*\)/\1/p' "$run_dir/optimizer.log" 2> /dev/null | tail -n 1
   for name in "${!exit_codes[@]}"; do
     say "$name: exit code ${exit_codes[$name]}"
     ((exit_codes[$name] == 0)) || bad=1

@@ -21,9 +21,11 @@ AIRDOS_PACKAGES=(
   iproute2 xvfb xauth jq
 )
 
+# What package.sh takes besides.
+AIRDOS_PACKAGING_PACKAGES=(dpkg-dev file help2man)
 # What test.sh takes besides: the fuzz targets (fuzz.sh) are built with clang's libFuzzer.
 # shellcheck disable=SC2034
-AIRDOS_TEST_PACKAGES=(clang libclang-rt-14-dev)
+AIRDOS_TEST_PACKAGES=(clang libclang-rt-14-dev "${AIRDOS_PACKAGING_PACKAGES[@]}" lintian systemd)
 
 # What lint.sh takes, and docs.sh.
 # shellcheck disable=SC2034

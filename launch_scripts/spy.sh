@@ -10,7 +10,7 @@
 # channel for its fields.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 url=${LCM_DEFAULT_URL:-$AIRDOS_DEFAULT_URL}
 url_given=no
@@ -62,10 +62,10 @@ first_file() {
   die "$name is missing: install it with 'apt-get install $package'"
 }
 airdos_jar=
-for file in "$AIRDOS_ROOT/build/share/java/airdos.jar" "$(dirname "$0")"/../../java/airdos.jar; do
+for file in "$AIRDOS_ROOT/build/share/java/airdos.jar" "$AIRDOS_ROOT/../java/airdos.jar"; do
   if [[ -e $file ]]; then airdos_jar=$file && break; fi
 done
-[[ -n $airdos_jar ]] || die "airdos.jar is missing: build it with launch_scripts/setup.sh (it needs default-jdk-headless)"
+[[ -n $airdos_jar ]] || die "airdos.jar is missing: install the package airdos-dev, or build it with launch_scripts/setup.sh"
 lcm_jar=$(first_file lcm.jar liblcm-java /usr/share/java/lcm.jar)
 chart_jar=$(first_file jchart2d.jar libjchart2d-java /usr/share/java/jchart2d.jar)
 command -v java > /dev/null || die "java is missing: install it with 'apt-get install default-jre'"

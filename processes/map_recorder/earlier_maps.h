@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,18 +41,18 @@ std::optional<UnfinishedMap> FindUnfinishedMap(const std::string& directory, con
 /// Whether there is a file that is not a closed map.
 bool IsUnfinished(const std::string& path);
 
-/// Renames the map, if there is one. Throws InputError.
-void KeepMap(const std::string& path);
+/// Takes a line for the user.
+using SayLine = std::function<void(const std::string&)>;
+
+/// Renames the map, if there is one, and reports it. Throws InputError.
+void KeepMap(const std::string& path, const SayLine& say);
 
 /// An interrupted run must not be lost to the next one in the same folder: renames its maps,
 /// including the closed ones of its earlier sessions.
-void KeepMapsOfACutRun(const std::string& directory);
-
-/// Prints a line of the recorder to stderr; empty lines are skipped.
-void Say(const std::string& line);
+void KeepMapsOfACutRun(const std::string& directory, const SayLine& say);
 
 /// Reports which map, if there is one, is being replaced.
-void SayWhatIsReplaced(const std::string& path);
+void SayWhatIsReplaced(const std::string& path, const SayLine& say);
 
 }  // namespace airdos
 

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "processes/map_recorder/map_recorder_node.h"
+#include "processes/node/live/process_log.h"
 #include "processes/node/live/process_main.h"
 
 int main(int argc, char** argv) {
@@ -20,6 +21,8 @@ int main(int argc, char** argv) {
     if (!run_dir.empty()) config->Override("output.directory=" + run_dir);
     airdos::MapRecorderOptions options = airdos::ReadMapRecorderOptions(config);
     options.rules.force = common->force;
+    const airdos::ProcessLog log(info.program, airdos::ParseLogLevel(common->log_level));
+    options.say = [log](const std::string& line) { log.Relay(line); };
     return std::make_unique<airdos::MapRecorderNode>(options);
   };
   info.publishes_frame_done = true;

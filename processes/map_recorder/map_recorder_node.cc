@@ -14,8 +14,14 @@ constexpr std::size_t kLargeChunkBytes = 8u << 20;  // such a chunk is closed ea
 
 }  // namespace
 
+void MapRecorderOptions::SayOnStderr(const std::string& line) {
+  std::fprintf(stderr, "map_recorder: %s\n", line.c_str());
+}
+
 MapRecorderNode::MapRecorderNode(const MapRecorderOptions& options)
-    : FrameNode("map_recorder"), options_(options), files_(options.directory, options.rules) {
+    : FrameNode("map_recorder"),
+      options_(options),
+      files_(options.directory, options.rules, options.say) {
   Join(channel::kStateEstimate, &MapRecorderInputs::state);
   JoinParts(channel::kMapUpdate, &MapRecorderInputs::updates);
   Subscribe<pose_t>(channel::kGroundTruth,
@@ -29,7 +35,7 @@ MapRecorderNode::~MapRecorderNode() {
   try {
     Finish();
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "map_recorder: %s\n", error.what());
+    options_.say(std::string("error: ") + error.what());
   }
 }
 

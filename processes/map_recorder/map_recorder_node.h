@@ -2,6 +2,7 @@
 #define AIRDOS_PROCESSES_MAP_RECORDER_MAP_RECORDER_NODE_H_
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -41,7 +42,7 @@ struct MapRecorderInputs {
 /// has them in its window. Otherwise the map is kept under another name (map.airdos.unfinished_1),
 /// and so are the maps of that run's earlier sessions (map.airdos.closed_1). The maps of a
 /// completed run are replaced, and everything else that it left in the folder is removed when the
-/// first frame arrives; both are reported on stderr. Files that were not written by a recorder, an
+/// first frame arrives; both are reported. Files that were not written by a recorder, an
 /// export or a replay are never touched (see OutputFolder); if one is in the way, this is reported
 /// before the first frame.
 ///
@@ -66,7 +67,7 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
   /// cannot be created or written to, another run is writing to it, or somebody else's files are in
   /// the way.
   explicit MapRecorderNode(const MapRecorderOptions& options);
-  /// Closes the map if Finish() was not called; a failure is then reported on stderr.
+  /// Closes the map if Finish() was not called; a failure is then reported.
   ~MapRecorderNode() override;
 
   /// Writes the last chunks and the exports. Does nothing if no frame arrived. Throws InputError

@@ -28,8 +28,8 @@ bool SelectAll(const std::string&, const std::string&) { return true; }
 
 }  // namespace
 
-SessionFiles::SessionFiles(const std::string& directory, const OutputRules& rules)
-    : directory_(directory), results_(CheckedDirectory(directory), rules) {
+SessionFiles::SessionFiles(const std::string& directory, const OutputRules& rules, SayLine say)
+    : directory_(directory), say_(std::move(say)), results_(CheckedDirectory(directory), rules) {
   results_.RequireReplaceable(NamesToBeWritten(directory_), SelectAll);
 }
 
@@ -44,7 +44,7 @@ std::optional<UnfinishedMap> SessionFiles::Open(const Header& header) {
     if (found) return found;
     ReplaceEarlierResults();
   }
-  if (IsUnfinished(PathOf(kMapName))) KeepMap(PathOf(kMapName));
+  if (IsUnfinished(PathOf(kMapName))) KeepMap(PathOf(kMapName), say_);
   OpenMap(0);
   Append(HeadChunk(header.session, std::string("airdos map_recorder ") + kVersion));
   return std::nullopt;
@@ -72,12 +72,12 @@ std::optional<UnfinishedMap> SessionFiles::Resume(const Header& header) {
 }
 
 void SessionFiles::ReplaceEarlierResults() {
-  KeepMapsOfACutRun(directory_);
+  KeepMapsOfACutRun(directory_, say_);
   for (int number = 1; fs::exists(SessionDirectory(directory_, number)); ++number) {
-    SayWhatIsReplaced(SessionDirectory(directory_, number) + "/" + kMapName);
+    SayWhatIsReplaced(SessionDirectory(directory_, number) + "/" + kMapName, say_);
   }
   const std::string what = SayReplaced(results_.RemoveEarlier(SelectAll));
-  if (!what.empty()) Say(directory_ + ": " + what);
+  if (!what.empty()) say_(directory_ + ": " + what);
 }
 
 void SessionFiles::OpenMap(std::int64_t num_bytes) {
@@ -130,7 +130,7 @@ void SessionFiles::Export(const FourDMap& map) {
   ExportMap(map, prefix_, prefix_.empty() ? kExportGroup : kGroup, &results_);
   for (const std::string& name : ExportNames(directory_, prefix_)) {
     if (results_.IsListed(name) || !fs::exists(results_.PathOf(name))) continue;
-    Say(results_.PathOf(name) + ": existed before and is not from this run");  // --force
+    say_(results_.PathOf(name) + ": existed before and is not from this run");  // --force
   }
 }
 

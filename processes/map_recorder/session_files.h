@@ -27,7 +27,8 @@ class SessionFiles {
 
   /// Locks the folder for its lifetime. Throws if the folder is not named, cannot be created or
   /// written to, or is in use by another run, or if files of other programs are in the way.
-  SessionFiles(const std::string& directory, const OutputRules& rules);
+  /// `say` takes lines for the user.
+  SessionFiles(const std::string& directory, const OutputRules& rules, SayLine say);
 
   /// Begins the map of the next session, whose first frame has this header; the previous one must
   /// be closed. If a recorder that was killed left an unfinished map of this session, that map is
@@ -76,6 +77,7 @@ class SessionFiles {
   std::string PathOf(const std::string& name) const { return results_.PathOf(prefix_ + name); }
 
   std::string directory_;
+  SayLine say_;
   OutputFolder results_;
   std::string prefix_;  // of the session's files in the folder: "" or "session_2/"
   std::string session_directory_;

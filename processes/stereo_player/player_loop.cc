@@ -69,29 +69,29 @@ std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std:
   return log;
 }
 
-void WriteLog(const std::string& path, FrameSource* source, std::ostream* log) {
+void WriteLog(const std::string& path, FrameSource* source, const ProcessLog& log) {
   EventLogWriter writer(path);
   while (!StopRequested()) {
     const std::vector<Envelope> frame = source->NextFrame();
-    for (const std::string& note : source->TakeNotes()) {
-      *log << "airdos-stereo-player: " << note << std::endl;
-    }
+    for (const std::string& note : source->TakeNotes()) log.Relay(note);
     if (frame.empty()) break;
     const std::int64_t utime = HeaderOfFrame(frame).utime;
     for (const Envelope& message : frame)
       writer.Append(utime, message.channel, message.payload.data(), message.payload.size());
   }
   writer.Sync();
-  *log << "airdos-stereo-player: " << path << ": " << writer.num_events() << " messages, "
-       << writer.num_bytes() << " bytes" << std::endl;
+  log.Info(path + ": " + std::to_string(writer.num_events()) + " messages, " +
+           std::to_string(writer.num_bytes()) + " bytes");
 }
 
 PlayerLoop::PlayerLoop(const PlayerOptions& options, OpenSource open_source,
-                       LcmTransport* transport, std::ostream* log)
+                       LcmTransport* transport, const ProcessLog* log,
+                       const std::string& notify_socket)
     : options_(options),
       open_source_(std::move(open_source)),
       transport_(transport),
       log_(log),
+      service_(notify_socket, log),
       gate_(options.gate, SteadyClock_s()) {}
 
 void PlayerLoop::Run() {
@@ -103,6 +103,7 @@ void PlayerLoop::Run() {
                         HandlerOf<frame_done_t>([this](const frame_done_t& done) {
                           gate_.OnFrameDone(done, SteadyClock_s());
                         }));
+  TellService();
   const double start_s = SteadyClock_s();
   const int num_loops = options_.is_one_session ? 1 : options_.num_loops;
   for (int loop = 0; loop < num_loops || num_loops == 0; ++loop) {
@@ -115,7 +116,8 @@ void PlayerLoop::Run() {
   line << "published " << num_published_ << " frames in " << SteadyClock_s() - start_s << " s";
   if (num_not_published_ > 0)
     line << ", the network rejected " << num_not_published_ << " messages";
-  Say(line.str());
+  log_->Info(line.str());
+  service_.TellStopping(line.str());
 }
 
 void PlayerLoop::PlayOnce(FrameSource* source) {
@@ -151,7 +153,7 @@ void PlayerLoop::WaitForTime(const Header& header) {
       line << "capture time jumps by " << gap_s << " s at image " << header.seq
            << ": continuing without waiting";
       if (num_jumps_ == kMaxJumpsSaid) line << " (further jumps are not reported)";
-      Say(line.str());
+      log_->Warning(line.str());
     }
     gap_s = 0;
   }
@@ -168,6 +170,7 @@ void PlayerLoop::WaitUntilAllDone() {
 }
 
 void PlayerLoop::Listen(int timeout_ms) {
+  TellService();
   if (transport_->Poll(timeout_ms)) {
     // Bounded: a flood of STATUS must not keep the player from playing.
     for (int i = 0; i < kMaxDrained && !StopRequested() && transport_->Poll(0); ++i) {
@@ -182,28 +185,29 @@ void PlayerLoop::PublishFrame(const std::vector<Envelope>& messages, const Heade
     if (message.channel == channel::kCalibration) calibration_ = message;
     Publish(message);
   }
+  TellService();
   gate_.OnPublished(header.session, header.seq, SteadyClock_s());
   ++num_published_;
   if (options_.say_every > 0 && num_published_ % options_.say_every == 0)
-    Say(std::to_string(num_published_) + " frames published");
+    log_->Info(std::to_string(num_published_) + " frames published");
 }
 
 void PlayerLoop::Publish(const Envelope& message) {
   if (!transport_->Publish(message.channel, message.payload.data(), message.payload.size())) {
-    if (num_not_published_++ == 0) Say("cannot publish on " + message.channel);
+    if (num_not_published_++ == 0) log_->Error("cannot publish on " + message.channel);
   }
   std::this_thread::sleep_for(std::chrono::duration<double>(
       static_cast<double>(message.payload.size()) / kMaxBytesPerSecond));
 }
 
-void PlayerLoop::SayNotes(FrameSource* source) {
-  for (const std::string& note : gate_.TakeNotes()) Say(note);
-  if (source == nullptr) return;
-  for (const std::string& note : source->TakeNotes()) Say(note);
+void PlayerLoop::TellService() {
+  service_.TellWhenDue(SteadyClock_s(), std::to_string(num_published_) + " frames published");
 }
 
-void PlayerLoop::Say(const std::string& line) {
-  *log_ << "airdos-stereo-player: " << line << std::endl;
+void PlayerLoop::SayNotes(FrameSource* source) {
+  for (const std::string& note : gate_.TakeNotes()) log_->Relay(note);
+  if (source == nullptr) return;
+  for (const std::string& note : source->TakeNotes()) log_->Relay(note);
 }
 
 }  // namespace airdos

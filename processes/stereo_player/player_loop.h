@@ -5,11 +5,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <ostream>
 #include <string>
 #include <utility>
 
 #include "processes/node/live/lcm_transport.h"
+#include "processes/node/live/process_log.h"
+#include "processes/node/live/service_notifier.h"
 #include "processes/node/log/log_source.h"
 #include "processes/stereo_player/lockstep_gate.h"
 #include "processes/stereo_player/player_options.h"
@@ -23,7 +24,7 @@ std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std:
 
 /// Writes what the player would publish as an LCM log, stamped with capture times, so that the same
 /// frames give the same file.
-void WriteLog(const std::string& path, FrameSource* source, std::ostream* log);
+void WriteLog(const std::string& path, FrameSource* source, const ProcessLog& log);
 
 /// Publishes a source over LCM, as fast as the other processes keep up or at the rate of the
 /// cameras.
@@ -39,9 +40,9 @@ class PlayerLoop {
   /// differ from these.
   using OpenSource = std::function<std::unique_ptr<FrameSource>(int num_sessions)>;
 
-  /// The transport is not owned. `log` receives messages to the user, one line each.
+  /// Neither transport nor log is owned. `notify_socket`: see ServiceNotifier.
   PlayerLoop(const PlayerOptions& options, OpenSource open_source, LcmTransport* transport,
-             std::ostream* log);
+             const ProcessLog* log, const std::string& notify_socket = "");
 
   /// Returns when the last frame is done everywhere, or on StopRequested().
   void Run();
@@ -54,13 +55,14 @@ class PlayerLoop {
   void PublishFrame(const std::vector<Envelope>& messages, const Header& header);
   void Publish(const Envelope& message);
   void Listen(int timeout_ms);
-  void Say(const std::string& line);
+  void TellService();
   void SayNotes(FrameSource* source);
 
   PlayerOptions options_;
   OpenSource open_source_;
   LcmTransport* transport_;
-  std::ostream* log_;
+  const ProcessLog* log_;
+  ServiceNotifier service_;
   LockstepGate gate_;
   std::optional<Envelope> calibration_;  // the last one, for processes that start later
   // Realtime pace: when the previous frame was due on our clock, and its capture time.

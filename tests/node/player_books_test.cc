@@ -297,7 +297,8 @@ TEST_F(PlayerFilesTest, EventsHaveTheTimeOfTheNewestMessageOfTheirFrame) {
   TwoFrames source;
   std::ostringstream said;
   const std::string path = folder_ + "/out.lcm";
-  WriteLog(path, &source, &said);
+  WriteLog(path, &source,
+           ProcessLog("player", LogLevel::kInfo, LogStyle::kJournal, &said, nullptr));
   EventLogReader reader(path);
   std::string text;
   while (const auto event = reader.Next()) {
@@ -306,7 +307,7 @@ TEST_F(PlayerFilesTest, EventsHaveTheTimeOfTheNewestMessageOfTheirFrame) {
   EXPECT_EQ(text, "0A3000 1B3000 2B4000 3A4000 ");
   // Of each event 28 bytes of head and one of name, then 8 + 24 and the text with its length and
   // end.
-  EXPECT_EQ(said.str(), "airdos-stereo-player: " + path + ": 4 messages, " +
+  EXPECT_EQ(said.str(), "<6>" + path + ": 4 messages, " +
                             std::to_string(4 * (28 + 1 + 8 + 24 + 4 + 2)) + " bytes\n");
 }
 

@@ -13,6 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+void Ignore(const std::string&) {}
+
 class SessionFilesTest : public ::testing::Test {
  protected:
   SessionFilesTest() {
@@ -42,7 +44,7 @@ class SessionFilesTest : public ::testing::Test {
 };
 
 TEST_F(SessionFilesTest, EachSessionHasItsMap) {
-  SessionFiles files(folder_, {});
+  SessionFiles files(folder_, {}, Ignore);
   EXPECT_FALSE(files.is_open());
   EXPECT_EQ(files.session_directory(), "");
   EXPECT_FALSE(files.Open({500, 5, 31}));
@@ -72,13 +74,13 @@ TEST_F(SessionFilesTest, AMapThatWasNotClosedIsGoneOnWithAndSoAreItsNotes) {
   frame.ground_truth = Se3();
   truth.SetFrame({5}, frame);
   {
-    SessionFiles killed(folder_, {});
+    SessionFiles killed(folder_, {}, Ignore);
     killed.Open({500, 5, 31});
     killed.Append(Frame(5));
     killed.Note(31, truth, StereoCamera{640, 480, 500, 500, 320, 240, 0.25}, 2);
   }
   EXPECT_TRUE(Exists(kNotesName));
-  SessionFiles files(folder_, {});
+  SessionFiles files(folder_, {}, Ignore);
   const std::optional<UnfinishedMap> found = files.Open({600, 6, 31});
   ASSERT_TRUE(found);
   EXPECT_EQ(found->num_live, 1u);
@@ -94,17 +96,17 @@ TEST_F(SessionFilesTest, AMapThatWasNotClosedIsGoneOnWithAndSoAreItsNotes) {
 
 TEST_F(SessionFilesTest, AMapOfAnotherSessionThatWasNotClosedIsKept) {
   {
-    SessionFiles killed(folder_, {});
+    SessionFiles killed(folder_, {}, Ignore);
     killed.Open({500, 5, 31});
     killed.Append(Frame(5));
   }
-  SessionFiles files(folder_, {});
+  SessionFiles files(folder_, {}, Ignore);
   EXPECT_FALSE(files.Open({600, 6, 32}));
   EXPECT_EQ(Read("map.airdos.unfinished_1").session, 31);
 }
 
 TEST_F(SessionFilesTest, WhatIsNotAsItWasRecordedIsSaid) {
-  SessionFiles files(folder_, {});
+  SessionFiles files(folder_, {}, Ignore);
   files.Open({500, 5, 31});
   files.Append(Frame(5));
   EXPECT_THROW(files.Close(EndChunk(std::nullopt, 3), {31, 2}, false), InputError) << "one pose";
@@ -113,7 +115,7 @@ TEST_F(SessionFilesTest, WhatIsNotAsItWasRecordedIsSaid) {
 }
 
 TEST_F(SessionFilesTest, ExportsOnlyWhereItIsTold) {
-  SessionFiles files(folder_, {});
+  SessionFiles files(folder_, {}, Ignore);
   for (const bool has_exports : {false, true}) {
     files.Open({500, 5, 31});
     files.Append(Frame(5));
@@ -126,11 +128,13 @@ TEST_F(SessionFilesTest, ExportsOnlyWhereItIsTold) {
   }
 }
 
-TEST_F(SessionFilesTest, AFolderMustBeNamed) { EXPECT_THROW(SessionFiles("", {}), InputError); }
+TEST_F(SessionFilesTest, AFolderMustBeNamed) {
+  EXPECT_THROW(SessionFiles("", {}, Ignore), InputError);
+}
 
 TEST_F(SessionFilesTest, OneRunAtATimeWritesThere) {
-  const SessionFiles files(folder_, {});
-  EXPECT_THROW(SessionFiles(folder_, {}), InputError);
+  const SessionFiles files(folder_, {}, Ignore);
+  EXPECT_THROW(SessionFiles(folder_, {}, Ignore), InputError);
 }
 
 }  // namespace

@@ -498,8 +498,7 @@ TEST_F(UserCases, ALogIsPlayedAgainAsNewSessions) {
             (std::vector<std::int64_t>{70, 71}));
 
   const std::string written = (folder_ / "written.lcm").string();
-  std::ostringstream log;
-  WriteLog(written, OpenPlayerSource(options, 70).get(), &log);
+  WriteLog(written, OpenPlayerSource(options, 70).get(), ProcessLog("player", LogLevel::kError));
   LogSource again(written);
   EXPECT_EQ(SessionsPlayed(&again, messages_), (std::vector<std::int64_t>{70, 71}));
 }

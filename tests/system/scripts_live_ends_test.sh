@@ -234,8 +234,8 @@ live_waits_for_what_was_sent() {
 }
 
 live_says_what_its_processes_say() {
-  make_optimizer 'echo "airdos-optimizer: READY now"; echo "airdos-optimizer: warning: it is dark"
-    trap "echo airdos-optimizer: poses: 7 from images; exit 1" TERM'
+  make_optimizer 'echo "airdos-optimizer: READY now"; echo "2026-03-01T12:34:56.789Z airdos-optimizer: warning: it is dark"
+    trap "echo 2026-03-01T12:34:56.789Z airdos-optimizer: info: poses: 7 from images; exit 1" TERM'
   ready
   await "the warning" grep -q "airdos-optimizer: warning: it is dark" "$work/live.err"
   kill -TERM "$live_pid"

@@ -20,7 +20,7 @@ each_script_says_its_version() {
 
 wrong_options_exit_2_in_one_line() {
   local script
-  for script in setup demo test lint docs fuzz spy run_live replay_log long_run; do
+  for script in setup demo test lint docs fuzz spy run_live replay_log long_run package keep_map network_setup; do
     expect 0 "Usage: launch_scripts/$script.sh" "$scripts/$script.sh" --help
     expect 2 "--no-such-option" "$scripts/$script.sh" --no-such-option
   done
@@ -38,6 +38,8 @@ wrong_options_exit_2_in_one_line() {
   expect 2 "no run of run_live.sh in '/nonexistent'" "$scripts/spy.sh" --namespace /nonexistent
   expect 2 "--seconds: not a whole number above 0: '0'" "$scripts/fuzz.sh" --seconds 0
   expect 2 "--jobs: not a whole number above 0: '0'" "$scripts/fuzz.sh" --jobs 0
+  expect 2 "which folder? One, not 2" "$scripts/keep_map.sh" /a /b
+  expect 2 "--out needs a value" "$scripts/package.sh" --out
   expect 1 "airdos-frontend is missing: build it" env AIRDOS_BIN="$work/none" "$scripts/run_live.sh"
 }
 

@@ -138,13 +138,14 @@ std::string LogRecorder::Summary() const {
   return text.str();
 }
 
-int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, std::ostream* log) {
+int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, std::ostream* out,
+                   const ProcessLog& log, ServiceNotifier* service) {
   LogRecorder recorder(options);
   transport->SubscribeAll([&recorder](const std::string& channel, const void* data,
                                       std::size_t size, std::int64_t receive_utime) {
     recorder.Take(channel, data, size, receive_utime);
   });
-  *log << kProcessName << " READY version " << kVersion << " url " << transport->url() << " file "
+  *out << kProcessName << " READY version " << kVersion << " url " << transport->url() << " file "
        << options.path << std::endl;
   std::string error;
   double next_status_s = 0;
@@ -154,6 +155,7 @@ int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, s
       const double now_s = SteadyClock_s();
       if (now_s >= next_status_s) {
         PublishStatus(recorder, transport, process_status_t::STATE_READY, "");
+        service->Tell("recording to " + options.path);
         next_status_s = now_s + kStatusPeriod_s;
       }
       if (now_s >= next_sync_s) {
@@ -168,10 +170,11 @@ int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, s
     recorder.Sync();
   } catch (const WriteError& failure) {
     error = failure.what();
-    *log << kProcessName << ": " << error << std::endl;
+    log.Error(error);
   }
   PublishStatus(recorder, transport, process_status_t::STATE_STOPPING, error);
-  *log << recorder.Summary() << std::flush;
+  service->TellStopping(error.empty() ? "recorded to " + options.path : error);
+  *out << recorder.Summary() << std::flush;
   return error.empty() ? 0 : 1;
 }
 

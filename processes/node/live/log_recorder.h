@@ -9,6 +9,8 @@
 #include <string>
 
 #include "processes/node/live/lcm_transport.h"
+#include "processes/node/live/process_log.h"
+#include "processes/node/live/service_notifier.h"
 #include "processes/node/log/event_log.h"
 #include "processes/node/node.h"
 
@@ -63,9 +65,10 @@ class LogRecorder {
 };
 
 /// Records until StopRequested() and publishes STATUS once a second, so that a source can wait for
-/// the recorder. Returns the exit code: 1 if the log could not be written completely (reported once
-/// on `log`).
-int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, std::ostream* log);
+/// the recorder. `out` receives the line that says READY, and the summary at the end. Returns the
+/// exit code: 1 if the log could not be written completely (reported once in `log`).
+int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, std::ostream* out,
+                   const ProcessLog& log, ServiceNotifier* service);
 
 }  // namespace airdos
 

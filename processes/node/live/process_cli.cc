@@ -9,6 +9,7 @@
 #include "common/util/output_files.h"
 #include "common/util/suggestion.h"
 #include "processes/node/live/lcm_transport.h"
+#include "processes/node/live/process_log.h"
 
 namespace airdos {
 namespace {
@@ -40,6 +41,12 @@ std::string ConfigFolder() {
   return AIRDOS_SOURCE_CONFIG_DIR;
 }
 
+void AddLogLevel(std::string* level, CLI::App* app) {
+  app->add_option("--log-level", *level, "Omit lines on stderr below this level")
+      ->check(OneOf(LogLevelNames()))
+      ->capture_default_str();
+}
+
 void AddCommonOptions(const OptionPages& pages, CLI::App* app, CommonArguments* arguments) {
   const std::string& config_name = pages.config_name;
   arguments->lcm_url = DefaultLcmUrl();
@@ -63,6 +70,7 @@ void AddCommonOptions(const OptionPages& pages, CLI::App* app, CommonArguments* 
   AddPage("--help-config", pages.reference,
           "Print all keys for --config and --set: default, what is allowed, unit, meaning", app);
   AddForce(&arguments->force, app);
+  AddLogLevel(&arguments->log_level, app);
 }
 
 const std::vector<std::string>& ConfigNames() {

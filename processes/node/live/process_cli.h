@@ -20,9 +20,13 @@ struct CommonArguments {
   std::string resolved_config;         ///< file to write; empty: none
   bool force = false;                  ///< see OutputRules
   RenamedKeys renamed;                 ///< of the configuration
+  std::string log_level = "info";      ///< one of LogLevelNames()
 };
 
-/// Adds --lcm-url, --config, --set, --resolved-config, --force, and --print-config and
+/// --log-level, of every process.
+void AddLogLevel(std::string* level, CLI::App* app);
+
+/// Adds --lcm-url, --config, --set, --resolved-config, --force, --log-level, and --print-config and
 /// --help-config, which print a page and end the program; the defaults are those of this
 /// installation.
 void AddCommonOptions(const OptionPages& pages, CLI::App* app, CommonArguments* arguments);

@@ -15,6 +15,7 @@
 #include "common/util/suggestion.h"
 #include "common/util/version.h"
 #include "common/util/words.h"
+#include "processes/node/live/process_log.h"
 
 namespace airdos {
 namespace {
@@ -69,7 +70,9 @@ int FailInOneLine(const CLI::App& app, std::string what, int exit_code) {
   // Texts of libraries may span several lines.
   while (!what.empty() && what.back() == '\n') what.pop_back();
   std::replace(what.begin(), what.end(), '\n', ' ');
-  std::cerr << app.get_name() << ": " << what << std::endl;
+  // The journal takes a line without a level for information.
+  const std::string head = StyleOfStderr() == LogStyle::kJournal ? "<3>" : "";
+  std::cerr << head << app.get_name() << ": " << what << std::endl;
   return exit_code;
 }
 

@@ -4,7 +4,9 @@
 #include "common/util/output_files.h"
 #include "processes/node/live/lcm_transport.h"
 #include "processes/node/live/log_recorder.h"
-#include "processes/node/live/program_cli.h"
+#include "processes/node/live/process_cli.h"
+#include "processes/node/live/process_log.h"
+#include "processes/node/live/service_notifier.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Records LCM messages to an event log, without losing any.", "airdos-record");
@@ -24,10 +26,14 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   // A recording cannot be repeated, so it is never marked as a file that may be replaced.
   app.add_flag("--force", options.replaces_file, "replace the log if there is one");
+  std::string log_level = "info";
+  airdos::AddLogLevel(&log_level, &app);
 
   return airdos::RunProgram(argc, argv, &app, [&] {
     airdos::InstallStopSignals();
     airdos::LcmTransport transport(lcm_url);
-    return airdos::RunLogRecorder(&transport, options, &std::cout);
+    const airdos::ProcessLog log("airdos-record", airdos::ParseLogLevel(log_level));
+    airdos::ServiceNotifier service(airdos::NotifySocketOfEnvironment(), &log);
+    return airdos::RunLogRecorder(&transport, options, &std::cout, log, &service);
   });
 }
