@@ -68,4 +68,10 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        pass
+    except (OSError, ValueError) as error:
+        print(f"person_detector.py: {error}", file=sys.stderr)
+        sys.exit(2)

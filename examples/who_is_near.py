@@ -65,4 +65,10 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        pass
+    except (OSError, ValueError) as error:
+        print(f"who_is_near.py: {error}", file=sys.stderr)
+        sys.exit(2)

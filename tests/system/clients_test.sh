@@ -94,7 +94,18 @@ PYTHON
   cp "$work"/pictures/image_1/00000[0-3].jpg "$work/few/image_1"
 }
 
-drivers_say_what_is_wrong() {
+# expect_one_line TEXT COMMAND…: says it in one line, and ends with 2.
+expect_one_line() {
+  local text=$1 code=0
+  shift
+  "$@" > "$work/out" 2>&1 || code=$?
+  ((code == 2)) || fail "$*: exit code $code: $(cat "$work/out")"
+  if (($(wc -l < "$work/out") != 1)) || ! grep -qF "$text" "$work/out"; then
+    fail "$*: not one line with '$text': $(cat "$work/out")"
+  fi
+}
+
+examples_say_what_is_wrong() {
   local driver code
   mkdir -p "$work/no_calibration"/image_{0,1}
   for driver in "$work/build-examples/camera_driver" "$work/examples/camera_driver.py"; do
@@ -107,6 +118,14 @@ drivers_say_what_is_wrong() {
     "$driver" --rate 0 "$work/few" > "$work/out" 2>&1 || code=$?
     ((code == 2)) || fail "$driver --rate 0: exit code $code: $(cat "$work/out")"
   done
+  local example
+  for example in who_is_near camera_driver person_detector; do
+    local -a command=("$work/examples/$example.py")
+    if [[ $example == camera_driver ]]; then command+=("$work/few"); fi
+    expect_one_line "LCM URL 'nonsense'" env LCM_DEFAULT_URL=nonsense "${command[@]}"
+    expect_one_line "no multicast route" "${new_network[@]}" "${command[@]}" # which has none yet
+  done
+  expect_one_line "could not convert" "$work/examples/who_is_near.py" five
 }
 
 declare -A pids=()
@@ -216,11 +235,13 @@ components_are_apart
 documented_commands_build_everything
 export PYTHONPATH=$prefix/lib/python3/dist-packages
 write_pictures
-if ! unshare -n true 2> /dev/null && ! unshare -r -n true 2> /dev/null; then
+new_network=(unshare -n)
+"${new_network[@]}" true 2> /dev/null || new_network=(unshare -r -n)
+if ! "${new_network[@]}" true 2> /dev/null; then
   echo "SKIPPED: the examples are built, but there is no right to make a network namespace to run them in"
   exit 77
 fi
 # shellcheck source=launch_scripts/common.sh
 (source "$source_dir/launch_scripts/common.sh" && CLIENTS_TEST_WORK=$work run_in_new_network "$0" "$@")
-drivers_say_what_is_wrong
+examples_say_what_is_wrong
 echo "all checks passed"

@@ -35,18 +35,22 @@ class Bus:
     """One place on the bus: publishes, and hears what is published on some channels, or on all.
 
     `url` is as LCM's: the default, or what LCM_DEFAULT_URL says. Raises ValueError for one that is wrong, OSError where the
-    network cannot do multicast (launch_scripts/network_setup.sh says what to do).
+    network cannot do multicast (network_setup.sh, of the launch scripts, says what to do).
     """
 
     def __init__(self, url=None, channels=None):
-        group, port, options = _parse(url or os.environ.get("LCM_DEFAULT_URL") or DEFAULT_URL)
+        url = url or os.environ.get("LCM_DEFAULT_URL") or DEFAULT_URL
+        group, port, options = _parse(url)
         self._address = (group, port)
         self._channels = None if channels is None else {_checked_channel(name) for name in channels}
         self._number = 0
         self._assembler = Assembler()
         self._sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, options["ttl"])
-        self._sender.connect(self._address)  # fails here where there is no route
+        try:
+            self._sender.connect(self._address)
+        except OSError as error:
+            raise OSError(error.errno, f"{url}: {error.strerror}: no multicast route? network_setup.sh checks and sets it") from None
         self._receiver = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._receiver.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         # The kernel gives as much as net.core.rmem_max allows; its default of 212,992 bytes loses bursts.
