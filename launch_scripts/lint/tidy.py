@@ -21,6 +21,8 @@ import subprocess
 import sys
 
 MAX_BATCH = 40
+# Where units are joined, the local names of one hide those of another; g++ warns of real shadows in each build.
+FLAGS = ["-Wno-shadow"]
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.M)
 TYPE = re.compile(r"^(?:struct|class|enum class|enum|using)\s+(\w+)\b(?!;)", re.M)
 TEST = re.compile(r"^(?:TEST|TEST_F|TEST_P|TYPED_TEST|BENCHMARK\w*)\((\w+)(?:, (\w+))?\)", re.M)
@@ -210,7 +212,7 @@ class Runner:
                 file.write(joined(batch))
         command = [self.options.program, "--quiet", f"--config-file={self.options.root}/.clang-tidy", *self.options.checks]
         command += ["--fix"] if self.options.fix else []
-        command += [source, "--", *merged_flags(batch)]
+        command += [source, "--", *merged_flags(batch), *FLAGS]
         done = subprocess.run(command, capture_output=True, text=True, cwd=self.options.build, check=False)
         if done.returncode not in (0, 1):
             return f"{source}:1:1: error: clang-tidy ended with {done.returncode}: {done.stderr} [crash]\n", 1
