@@ -97,18 +97,16 @@ class Unit:
         self.flags = words[1 : words.index("-o")]
         self.closure = tree.closure(path)
         self.names = tree.local_names(path)
-        self.types = tree.in_headers(TYPE, self.closure)
-        # A macro would change these in headers, too, or does not reach them.
+        self.declared = tree.in_headers(TYPE, self.closure) | tree.in_headers(FUNCTION, self.closure)
+        # A macro would change these in its headers, too, or does not reach them. They must be nobody else's.
         self.fixed_names = self.names & (tree.in_headers(WORD, self.closure) | tree.tests(path))
         top = os.path.relpath(path, tree.folders[0]).split(os.sep)[0]
         self.group = (top, next((word for word in self.flags if word.endswith(".pch")), ""))
 
     def fits(self, batch):
-        names = set().union(*(unit.names for unit in batch))
-        fixed = set().union(*(unit.fixed_names for unit in batch))
-        types = set().union(*(unit.types for unit in batch))
-        # Its own header may declare a name that it also defines locally only if it compiles by itself.
-        return not (self.fixed_names & names or self.names & fixed or self.names & (types - self.types) or names & (self.types - types))
+        return not any(
+            self.fixed_names & (other.names | other.declared) or other.fixed_names & (self.names | self.declared) for other in batch
+        )
 
 
 def read_units(tree, build):
@@ -151,7 +149,8 @@ def joined(batch):
     """The text of a unit that is all of these."""
     lines = []
     for number, unit in enumerate(batch):
-        same = sorted(name for name in unit.names if any(name in other.names for other in batch if other is not unit))
+        others = set().union(*(other.names | other.declared for other in batch if other is not unit))
+        same = sorted((unit.names - unit.fixed_names) & others)
         lines += [f"#define {name} {name}_{number}" for name in same]
         # The check of includes of .cc files looks at the main file only, which this is.
         lines += [f'#include "{unit.path}"  // NOLINT']
