@@ -21,6 +21,10 @@ import subprocess
 import sys
 
 MAX_BATCH = 40
+# Where units are joined, the local names of one hide those of another; g++ warns of real shadows in each build. What clang's
+# -Wconversion says beyond that of g++, an int as an index, is no mistake here. Twenty errors would end a unit, and look like a batch
+# that does not compile.
+FLAGS = ["-Wno-shadow", "-Wno-sign-conversion", "-ferror-limit=0"]
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.M)
 TYPE = re.compile(r"^(?:struct|class|enum class|enum|using)\s+(\w+)\b(?!;)", re.M)
 TEST = re.compile(r"^(?:TEST|TEST_F|TEST_P|TYPED_TEST|BENCHMARK\w*)\((\w+)(?:, (\w+))?\)", re.M)
@@ -95,18 +99,16 @@ class Unit:
         self.flags = words[1 : words.index("-o")]
         self.closure = tree.closure(path)
         self.names = tree.local_names(path)
-        self.types = tree.in_headers(TYPE, self.closure)
-        # A macro would change these in headers, too, or does not reach them.
+        self.declared = tree.in_headers(TYPE, self.closure) | tree.in_headers(FUNCTION, self.closure)
+        # A macro would change these in its headers, too, or does not reach them. They must be nobody else's.
         self.fixed_names = self.names & (tree.in_headers(WORD, self.closure) | tree.tests(path))
         top = os.path.relpath(path, tree.folders[0]).split(os.sep)[0]
         self.group = (top, next((word for word in self.flags if word.endswith(".pch")), ""))
 
     def fits(self, batch):
-        names = set().union(*(unit.names for unit in batch))
-        fixed = set().union(*(unit.fixed_names for unit in batch))
-        types = set().union(*(unit.types for unit in batch))
-        # Its own header may declare a name that it also defines locally only if it compiles by itself.
-        return not (self.fixed_names & names or self.names & fixed or self.names & (types - self.types) or names & (self.types - types))
+        return not any(
+            self.fixed_names & (other.names | other.declared) or other.fixed_names & (self.names | self.declared) for other in batch
+        )
 
 
 def read_units(tree, build):
@@ -149,7 +151,8 @@ def joined(batch):
     """The text of a unit that is all of these."""
     lines = []
     for number, unit in enumerate(batch):
-        same = sorted(name for name in unit.names if any(name in other.names for other in batch if other is not unit))
+        others = set().union(*(other.names | other.declared for other in batch if other is not unit))
+        same = sorted((unit.names - unit.fixed_names) & others)
         lines += [f"#define {name} {name}_{number}" for name in same]
         # The check of includes of .cc files looks at the main file only, which this is.
         lines += [f'#include "{unit.path}"  // NOLINT']
@@ -210,7 +213,7 @@ class Runner:
                 file.write(joined(batch))
         command = [self.options.program, "--quiet", f"--config-file={self.options.root}/.clang-tidy", *self.options.checks]
         command += ["--fix"] if self.options.fix else []
-        command += [source, "--", *merged_flags(batch)]
+        command += [source, "--", *merged_flags(batch), *FLAGS]
         done = subprocess.run(command, capture_output=True, text=True, cwd=self.options.build, check=False)
         if done.returncode not in (0, 1):
             return f"{source}:1:1: error: clang-tidy ended with {done.returncode}: {done.stderr} [crash]\n", 1
@@ -235,7 +238,7 @@ def check_lone_headers(tree, units, runner):
         source = os.path.join(runner.folder, f"{key[:24]}_{os.path.basename(header)}.cc")
         with open(source, "w", encoding="utf-8") as file:
             file.write(f'#include "{header}"\n')
-        command = [compiler, *unit.flags, "-fsyntax-only", source]
+        command = [compiler, *unit.flags, *FLAGS, "-fsyntax-only", source]
         done = subprocess.run(command, capture_output=True, text=True, cwd=runner.options.build, check=False)
         os.remove(source)
         if done.returncode == 0:

@@ -179,7 +179,7 @@ class FrameNode : public Node {
     if (!set->parts.empty() && set->parts.begin()->second.num_parts != num_parts) {
       return "num_parts " + std::to_string(num_parts) + " differs from that of another part";
     }
-    if (!set->parts.emplace(part, std::move(message)).second) {
+    if (!set->parts.emplace(part, std::forward<Message>(message)).second) {
       return "part " + std::to_string(part) + " came twice";
     }
     if (static_cast<int>(set->parts.size()) < num_parts) return "";

@@ -138,10 +138,15 @@ the_same_local_name_is_no_mistake() {
   tidied 0
   says out '3 units in 1 batches'
   ran 1 'clang-tidy --quiet'
-  # A type of a header is not to be renamed.
+  # Nor is that of a type in a header of another unit; but one in a header of its own is not to be renamed.
   printf '#pragma once\n\nstruct Thing {};\n' > "$root/common/util/thing.h"
   unit three <<< $'#include "common/util/thing.h"\n\nThing Three() { return {}; }'
   unit three_too <<< $'namespace {\nstruct Thing {\n  int a = 0;\n};\n}  // namespace\n\nint ThreeToo() { return Thing().a; }'
+  tidied 0
+  says out '4 units in 1 batches'
+  ran 1 'clang-tidy --quiet'
+  unit three_too <<< $'#include "common/util/sum.h"\n\nnamespace {\nint values() { return 0; }\n}  // namespace\n\nint ThreeToo() { return values(); }'
+  unit three <<< $'#include "common/util/thing.h"\n\nnamespace {\nint values() { return 0; }\n}  // namespace\n\nint Three() { return values(); }'
   tidied 0
   says out '4 units in 2 batches'
   ran 2 'clang-tidy --quiet'
