@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "common/util/format.h"
 
 namespace airdos {
 
@@ -79,17 +80,9 @@ nlohmann::json FindingList::ToJson(const std::string& input) const {
   return json;
 }
 
-std::string Brief(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.3g", value);
-  return text;
-}
+std::string Brief(double value) { return Format("%.3g", value); }
 
-std::string Percent(double fraction) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.0f %%", 100 * fraction);
-  return text;
-}
+std::string Percent(double fraction) { return Format("%.0f %%", 100 * fraction); }
 
 double Quantile(std::vector<double> values, double fraction) {
   if (values.empty()) return 0;

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <regex>
 
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -108,9 +108,8 @@ void CheckUnit(const std::string& path, const std::vector<TimeRow>& rows) {
   }
   const std::string unit = rows.empty() ? "" : OtherTimeUnit(rows[0].value, median);
   if (unit.empty()) return;
-  char step[32];
-  std::snprintf(step, sizeof(step), "%.6g", median);
-  throw InputError(path + WrongTimeUnit(unit, "'" + Shown(rows[0].text) + "', steps of " + step));
+  throw InputError(path + WrongTimeUnit(unit, "'" + Shown(rows[0].text) + "', steps of " +
+                                                  Format("%.6g", median)));
 }
 
 void CheckOrder(const std::string& path, const std::vector<TimeRow>& rows,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "common/util/error.h"
+#include "common/util/format.h"
 #include "common/util/input_file.h"
 #include "common/util/json_file.h"
 
@@ -89,12 +89,6 @@ HelpPoint MakePoint(const std::optional<int>& cap, const std::vector<Pair>& pair
     point.ratio_of_sums[figure] = Ratio(sum_on, sum_mask_only);
   }
   return point;
-}
-
-std::string Format(const char* format, double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
 }
 
 std::string RunsTable(const HelpCurve& curve) {

@@ -8,6 +8,7 @@
 #include "common/human/skeleton.h"
 #include "common/map/byte_io.h"
 #include "common/util/error.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -62,11 +63,7 @@ class TrajectoryRows {
 std::string KittiRow(const Se3& pose) {
   const Eigen::Matrix4d m = pose.matrix();
   std::string row;
-  char number[40];
-  for (int i = 0; i < 12; ++i) {
-    std::snprintf(number, sizeof number, "%s%.9e", i == 0 ? "" : " ", m(i / 4, i % 4));
-    row += number;
-  }
+  for (int i = 0; i < 12; ++i) row += Format("%s%.9e", i == 0 ? "" : " ", m(i / 4, i % 4));
   return row + "\n";
 }
 
@@ -167,12 +164,9 @@ std::string TumRow(std::int64_t utime, const Se3& T_W_B) {
       utime < 0 ? 0 - static_cast<std::uint64_t>(utime) : static_cast<std::uint64_t>(utime);
   const Eigen::Vector3d& p = T_W_B.translation;
   const Eigen::Quaterniond& q = T_W_B.rotation;
-  char row[400];
-  std::snprintf(row, sizeof row,
-                "%s%" PRIu64 ".%06" PRIu64 " %.9f %.9f %.9f %.12f %.12f %.12f %.12f\n",
+  return Format("%s%" PRIu64 ".%06" PRIu64 " %.9f %.9f %.9f %.12f %.12f %.12f %.12f\n",
                 utime < 0 ? "-" : "", magnitude / kUsPerS, magnitude % kUsPerS, p.x(), p.y(), p.z(),
                 q.x(), q.y(), q.z(), q.w());
-  return row;
 }
 
 std::optional<Se3> TorsoPose(const MapHuman& human) {

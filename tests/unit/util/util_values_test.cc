@@ -10,6 +10,7 @@
 
 #include "common/util/digest.h"
 #include "common/util/error.h"
+#include "common/util/format.h"
 #include "common/util/free_disk.h"
 #include "common/util/image_header.h"
 #include "common/util/json_file.h"
@@ -210,6 +211,14 @@ TEST(JsonValuesTest, WholeNumbersWithinBothLimits) {
 }
 
 // The example of FIPS 180-2.
+TEST(FormatValuesTest, IsAsLongAsItsText) {
+  EXPECT_EQ(Format("%s", ""), "");
+  EXPECT_EQ(Format("%-6s|%6.2f %%|%+d", "ATE", 1.005, 7), "ATE   |  1.00 %|+7");
+  const std::string word(1000, 'x');  // no buffer of a fixed length cuts it
+  EXPECT_EQ(Format("%s%s.", word.c_str(), word.c_str()), word + word + ".");
+  EXPECT_EQ(Format("%.*f", 3, 2.0 / 3), "0.667");
+}
+
 TEST(DigestValuesTest, IsSha256) {
   Digest digest;
   digest.Add("a", 1);
