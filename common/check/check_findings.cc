@@ -1,10 +1,9 @@
 #include "common/check/check_findings.h"
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "common/util/format.h"
+#include "common/util/text_file.h"
 
 namespace airdos {
 
@@ -19,19 +18,6 @@ const char* NameOf(Severity severity) {
   }
   return "error";
 }
-
-namespace {
-
-/// Findings quote files: no control character of them may reach a terminal.
-std::string Printable(std::string text) {
-  for (char& c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 0x20 || code == 0x7f) c = '?';
-  }
-  return text;
-}
-
-}  // namespace
 
 void FindingList::Add(Severity severity, const std::string& kind, const std::string& where,
                       const std::string& what) {
@@ -83,14 +69,5 @@ nlohmann::json FindingList::ToJson(const std::string& input) const {
 std::string Brief(double value) { return Format("%.3g", value); }
 
 std::string Percent(double fraction) { return Format("%.0f %%", 100 * fraction); }
-
-double Quantile(std::vector<double> values, double fraction) {
-  if (values.empty()) return 0;
-  const double rank = std::ceil(fraction * static_cast<double>(values.size())) - 1;
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(std::clamp(
-                                        rank, 0.0, static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
-}
 
 }  // namespace airdos

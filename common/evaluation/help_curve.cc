@@ -13,6 +13,7 @@
 #include "common/util/format.h"
 #include "common/util/input_file.h"
 #include "common/util/json_file.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
@@ -44,18 +45,7 @@ CappedRun ParseRun(const json& object) {
   return run;
 }
 
-/// Of sorted values, `share` of the way from the first to the last.
-double Quantile(const std::vector<double>& sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const std::size_t below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  const double part = place - static_cast<double>(below);
-  if (part == 0) return sorted[below];  // also keeps infinity out of the product
-  return (1 - part) * sorted[below] + part * sorted[above];
-}
-
-Spread SpreadOf(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
+Spread SpreadOf(const std::vector<double>& values) {
   return {Quantile(values, 0.5), Quantile(values, 0.25), Quantile(values, 0.75)};
 }
 

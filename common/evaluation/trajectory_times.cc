@@ -5,6 +5,7 @@
 
 #include "common/util/error.h"
 #include "common/util/format.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
@@ -23,14 +24,6 @@ constexpr double kSparseIntervalS = 10;
 constexpr double kSparseIntervalSinceEpochS = 400;
 constexpr double kMostRepeated = 0.1;
 constexpr double kFewRepeated = 0.005;
-
-double Quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 std::vector<double> IntervalsOf(const std::vector<TrajectoryPose>& poses) {
   std::vector<double> intervals_s;

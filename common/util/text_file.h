@@ -19,6 +19,12 @@ struct TextLine {
 /// given, gets the text of the last comment above the first line, which often names the columns.
 std::vector<TextLine> ReadTextLines(const std::string& path, std::string* heading = nullptr);
 
+/// Messages quote files: no control character of them may reach a terminal. Each becomes a question
+/// mark.
+std::string Printable(std::string text);
+/// A word of a file for a message: printable, and cut where it is longer than 60 bytes.
+std::string Shown(const std::string& word);
+
 /// The words from number `first` on as finite numbers. Throws InputError naming file, line and
 /// word.
 std::vector<double> ParseNumbers(const std::string& path, const TextLine& line, std::size_t first);

@@ -21,7 +21,7 @@ class RecentValues {
  public:
   explicit RecentValues(std::size_t capacity) : capacity_(capacity) {}
   void Add(double value);
-  /// `fraction` in 0..1; nearest rank; 0 while there is no value.
+  /// Quantile() of them; `fraction` in 0..1; 0 while there is no value.
   double Percentile(double fraction) const;
 
  private:
