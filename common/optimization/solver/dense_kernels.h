@@ -25,7 +25,8 @@ bool FactorisePanel(double* panel, int n, int width, int stride);
 /// C += A^T B for row-major A (rows x a) and B (rows x b): one factor's share of the Hessian.
 using AddProduct = void (*)(const double* A, int stride_a, const double* B, int stride_b,
                             double* C);
-/// For 1 to 6 rows; a and b of 1, 3 or 6.
+/// For 1 to 6 rows; a and b of 1, 3 or 6. Ends the process on others: a product of the wrong size
+/// would write beyond C.
 AddProduct FindAddProduct(int rows, int a, int b);
 
 }  // namespace airdos

@@ -30,7 +30,9 @@ class FactorGraph {
     static constexpr int kWholeTrack = -1;
 
     double* values = nullptr;
-    int size = 3;  ///< of `values`; kPoseBlockSize: a rigid motion, with PoseManifold
+    /// Of `values`: 1, 3, or kPoseBlockSize for a rigid motion, with PoseManifold. dense_kernels.h
+    /// has products for blocks of these sizes only; another one is to be added there first.
+    int size = 3;
     Kind kind = Kind::kPose;
     bool is_constant = false;
     int track = 0;            ///< kTrack: which
@@ -47,14 +49,15 @@ class FactorGraph {
     bool is_removed = false;
   };
 
-  /// Both return the index of what they add.
+  /// Both return the index of what they add. A programmer's error, in every build type: a block
+  /// without values or of another size than above; a factor without residuals or with more than
+  /// kMaxResiduals, of blocks that are not there or of another size than its cost function says.
   int AddBlock(const Block& block);
   template <class... Blocks>
   int AddFactor(std::unique_ptr<ceres::CostFunction> cost, const ceres::LossFunction* loss,
                 Blocks... blocks) {
     static_assert(sizeof...(blocks) <= kMaxBlocks);
-    factors_.push_back({std::move(cost), loss, sizeof...(blocks), {blocks...}, false});
-    return static_cast<int>(factors_.size()) - 1;
+    return AddFactor({std::move(cost), loss, sizeof...(blocks), {blocks...}, false});
   }
   void SetConstant(int block) { blocks_[static_cast<std::size_t>(block)].is_constant = true; }
   /// Removed factors stay in place and count no more.
@@ -70,6 +73,8 @@ class FactorGraph {
   double SquaredError(int factor) const;
 
  private:
+  int AddFactor(Factor factor);
+
   std::vector<Block> blocks_;
   std::vector<Factor> factors_;
 };
