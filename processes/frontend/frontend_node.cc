@@ -5,6 +5,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/human/body_mask.h"
+#include "processes/node/message/conversions.h"
+#include "processes/node/message/header.h"
 #include "processes/node/message/image_codec.h"
 #include "processes/node/message/keypoint_messages.h"
 
@@ -27,10 +29,7 @@ std::int8_t ToMessage(TrackingState state) {
 
 static_features_t ToMessage(const Header& header, std::int64_t odometry_start_seq,
                             const OdometryFrame& frame) {
-  static_features_t message;
-  message.utime = header.utime;
-  message.seq = header.seq;
-  message.session = header.session;
+  auto message = MessageOf<static_features_t>(header);
   message.tracking_state = ToMessage(frame.state);
   FromSe3(frame.T_O_C, message.position_O_C, message.orientation_O_C);
   message.odometry_start_seq = odometry_start_seq;
@@ -96,21 +95,19 @@ FrontendNode::FrontendNode(const FrontendOptions& options)
 std::string FrontendNode::ReceiveUpdate(map_update_t&& message) {
   if (!session_ || message.session != *session_) return "of another session";
   const std::int64_t seq = message.seq;
-  const auto num_parts = static_cast<std::size_t>(message.num_parts);
   const bool is_expected = std::find(published_.begin(), published_.end(), seq) != published_.end();
   // The optimizer gave up a frame that is still to be published, so what that frame waits for got
   // lost. Only the next ones: no single wrong number may end the waiting.
   const std::int64_t ahead = published_.empty() ? 0 : seq - published_.back();
   if (ahead > 0 && ahead <= options_.feedback_lag) is_feedback_silent_ = true;
   if (!is_expected) return "too late, or of a frame that was not published";
-  UpdateParts& parts = updates_[seq];
-  const int part = message.part;
-  parts[part] = std::move(message);
-  if (parts.size() >= num_parts) {
+  PartSet<map_update_t>& update = updates_[seq];
+  const std::string refusal = update.Add(std::move(message));
+  if (update.is_complete()) {
     newest_update_ = std::max(newest_update_, seq);
     is_feedback_silent_ = false;
   }
-  return "";
+  return refusal;
 }
 
 std::optional<std::int64_t> FrontendNode::RequiredUpdate() const {
@@ -146,18 +143,18 @@ void FrontendNode::ApplyUpdates() {
   const std::optional<std::int64_t> required = RequiredUpdate();
   if (!required) return;
   if (newest_update_ < *required) is_feedback_silent_ = true;
-  const auto parts_of_required = updates_.find(*required);
-  const bool is_complete = parts_of_required != updates_.end() &&
-                           static_cast<std::int32_t>(parts_of_required->second.size()) ==
-                               parts_of_required->second.begin()->second.num_parts;
-  if (!is_complete) ++counters(channel::kMapUpdate).num_missing;
+  const auto of_required = updates_.find(*required);
+  if (of_required == updates_.end() || !of_required->second.is_complete()) {
+    ++counters(channel::kMapUpdate).num_missing;
+  }
   while (!updates_.empty() && updates_.begin()->first <= *required) {
-    const auto& [seq, parts] = *updates_.begin();
-    MapCorrection correction;
-    correction.newest = FrameId{seq};
-    for (const auto& [number, part] : parts) AddTo(part, &correction);
-    if (static_cast<std::int32_t>(parts.size()) == parts.begin()->second.num_parts)
+    auto& [seq, update] = *updates_.begin();
+    if (update.is_complete()) {
+      MapCorrection correction;
+      correction.newest = FrameId{seq};
+      for (const map_update_t& part : update.Take()) AddTo(part, &correction);
       odometry_->Apply(correction);
+    }
     updates_.erase(updates_.begin());
   }
 }
@@ -168,11 +165,10 @@ std::vector<PersonMeasurement> FrontendNode::People(const FrontendInputs& inputs
   for (const human_observation_t& human : inputs.humans->humans) {
     PersonMeasurement person{HumanId{human.track_id}, {}};
     for (std::size_t i = 0; i < human.joint_id.size(); ++i) {
-      const std::vector<float>& s = human.covariance_C[i];
       PersonMeasurement::Joint joint;
       joint.joint = human.joint_id[i];
       joint.p_C = {human.x_C_m[i], human.y_C_m[i], human.z_C_m[i]};
-      joint.covariance_C << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+      joint.covariance_C = ToCovariance(human.covariance_C[i]);
       const bool is_covariance =
           Eigen::LLT<Eigen::Matrix3d>(joint.covariance_C).info() == Eigen::Success;
       if (joint.p_C.allFinite() && joint.covariance_C.allFinite() && is_covariance) {
@@ -182,14 +178,6 @@ std::vector<PersonMeasurement> FrontendNode::People(const FrontendInputs& inputs
     people.push_back(std::move(person));
   }
   return people;
-}
-
-bool FrontendNode::Fits(const std::optional<cv::Mat>& image, const char* channel,
-                        const std::string& reason) {
-  if (image && image->size() == cv::Size(camera().width, camera().height)) return true;
-  ++counters(channel).num_rejected;
-  counters(channel).last_reject = image ? "its size is not that of the calibration" : reason;
-  return false;
 }
 
 cv::Mat FrontendNode::Mask(const FrontendInputs& inputs) {

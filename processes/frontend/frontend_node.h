@@ -19,6 +19,7 @@
 #include "common/features/visual_odometry.h"
 #include "processes/frontend/input_watch.h"
 #include "processes/node/frame_node.h"
+#include "processes/node/message/part_set.h"
 #include "processes/node/partner_watch.h"
 
 namespace airdos {
@@ -76,7 +77,6 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   std::optional<std::int64_t> RequiredUpdate() const;
   void ApplyUpdates();
   static std::vector<PersonMeasurement> People(const FrontendInputs& inputs);
-  bool Fits(const std::optional<cv::Mat>& image, const char* channel, const std::string& reason);
   /// Where people are, from masks, or else from keypoints; empty if nothing says.
   cv::Mat Mask(const FrontendInputs& inputs);
   std::optional<StereoImagePair> Images(const Header& header, const FrontendInputs& inputs);
@@ -90,9 +90,8 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   std::optional<std::int64_t> session_;
   std::vector<std::int64_t>
       published_;  // image numbers of the last feedback_lag frames, oldest first
-  using UpdateParts = std::map<int, map_update_t>;
-  std::map<std::int64_t, UpdateParts> updates_;  // of this session, by seq
-  std::int64_t newest_update_ = -1;              // complete
+  std::map<std::int64_t, PartSet<map_update_t>> updates_;  // of this session, by seq
+  std::int64_t newest_update_ = -1;                        // complete
   bool is_feedback_silent_ =
       false;  // a frame had to start without, or must: do not wait until an update comes
 };

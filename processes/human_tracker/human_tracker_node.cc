@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "processes/node/message/channels.h"
+#include "processes/node/message/conversions.h"
+#include "processes/node/message/header.h"
 #include "processes/node/message/image_codec.h"
 #include "processes/node/message/keypoint_messages.h"
 
@@ -33,13 +35,7 @@ human_observation_t ToMessage(const TrackedHuman& human) {
     message.x_C_m.push_back(as_float(seen->p_C.x()));
     message.y_C_m.push_back(as_float(seen->p_C.y()));
     message.z_C_m.push_back(as_float(seen->p_C.z()));
-    const Eigen::Matrix3d& c = seen->covariance_C;
-    message.covariance_C.emplace_back();
-    for (int row = 0; row < 3; ++row) {
-      for (int column = row; column < 3; ++column) {
-        message.covariance_C.back().push_back(as_float(c(row, column)));
-      }
-    }
+    message.covariance_C.push_back(FromCovariance(seen->covariance_C));
   }
   message.num_joints = static_cast<int32_t>(message.joint_id.size());
   return message;
@@ -64,14 +60,6 @@ void HumanTrackerNode::StartSession(const Header& header) {
   constexpr std::int64_t kMostPerFrame = 1000;  // Validate() lets 200 people an image pass
   tracker_ = std::make_unique<HumanTracker>(options_,
                                             HumanId{FirstRunningNumber(header.seq, kMostPerFrame)});
-}
-
-bool HumanTrackerNode::Fits(const std::optional<cv::Mat>& image, const char* channel,
-                            const std::string& reason) {
-  if (image && image->size() == cv::Size(camera().width, camera().height)) return true;
-  ++counters(channel).num_rejected;
-  counters(channel).last_reject = image ? "its size is not that of the calibration" : reason;
-  return false;
 }
 
 void HumanTrackerNode::WatchKeypoints(const HumanTrackerInputs& inputs, const PeopleFrame& frame) {
@@ -113,10 +101,7 @@ void HumanTrackerNode::ProcessFrame(const Header& header, HumanTrackerInputs inp
   WatchKeypoints(inputs, frame);
   const TrackedFrame tracked = tracker_->Process(camera(), frame);
 
-  human_observations_t message{};
-  message.utime = header.utime;
-  message.seq = header.seq;
-  message.session = header.session;
+  auto message = MessageOf<human_observations_t>(header);
   message.num_detected_left = static_cast<int32_t>(frame.left.size());
   message.num_detected_right = static_cast<int32_t>(frame.right.size());
   message.num_rejected = static_cast<int32_t>(tracked.num_rejected);

@@ -17,6 +17,21 @@ Header HeaderOf(const Message& message) {
   return {message.utime, message.seq, message.session};
 }
 
+template <class Message>
+void SetHeader(const Header& header, Message* message) {
+  message->utime = header.utime;
+  message->seq = header.seq;
+  message->session = header.session;
+}
+
+/// With that header; all else is zero.
+template <class Message>
+Message MessageOf(const Header& header) {
+  Message message{};
+  SetHeader(header, &message);
+  return message;
+}
+
 /// First of the running numbers (landmarks, people) that a process gives which hears a session from
 /// image `first_seq` on, if it makes fewer than `most_per_frame` of them in a frame: 1 at the start
 /// of a session. A process that was killed and started again so never uses a number that the one
