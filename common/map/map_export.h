@@ -52,7 +52,8 @@ std::vector<std::string> ExportMap(const FourDMap& map, const std::string& map_p
 std::optional<Se3> TorsoPose(const MapHuman& human);
 
 /// One line of people.jsonl, without the line's end: {"seq", "utime", "track", "joints": {id:
-/// [x, y, z]}, "measured": {…}, "segment_lengths_m": {number: length}}, joints in W (m).
+/// [x, y, z]}, "measured": {…}, "segment_lengths_m": {number: length}}, joints in W (m), the map's
+/// single precision exactly.
 std::string HumanToJson(FrameId frame, HumanId human, const MapHuman& state);
 
 /// Text of a TUM row, s with six decimals.
