@@ -66,9 +66,6 @@ std::string Brief(double value);
 /// A percentage, such as "12 %".
 std::string Percent(double fraction);
 
-/// The value below which `fraction` (0..1) of the values lie, nearest rank; 0 for no value.
-double Quantile(std::vector<double> values, double fraction);
-
 }  // namespace airdos
 
 #endif  // AIRDOS_COMMON_CHECK_FINDINGS_H_

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "common/util/quantile.h"
+
 namespace airdos {
 namespace {
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "common/util/quantile.h"
+
 namespace airdos {
 namespace {
 

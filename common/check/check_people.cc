@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/dataset/image_file.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/check/stereo_matches.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {

@@ -1,10 +1,10 @@
 #include "common/check/check_stereo.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "common/check/stereo_matches.h"
 #include "common/dataset/image_file.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/util/quantile.h"
+
 namespace airdos {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "common/check/check_findings.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {

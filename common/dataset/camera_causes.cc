@@ -1,19 +1,16 @@
 #include "common/dataset/camera_causes.h"
 
 #include <cmath>
-#include <cstdio>
 #include <utility>
+
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
 
 bool IsPlausibleBaseline(double baseline_m) { return baseline_m >= 0.02 && baseline_m <= 2; }
 
-std::string Brief(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.4g", value);
-  return text;
-}
+std::string Brief(double value) { return Format("%.4g", value); }
 
 /// Size of the images in which the camera's principal point would be central.
 std::pair<double, double> CalibratedSize(const StereoCamera& camera) {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -199,9 +199,7 @@ std::string SizeMismatchText(std::int64_t width, std::int64_t height, const std:
   const double factor_y = static_cast<double>(height) / static_cast<double>(wanted_height);
   if (width == wanted_height && height == wanted_width) return text + ": turned by 90 degrees";
   if (std::abs(factor / factor_y - 1) > 0.02) return text + ": with another aspect ratio";
-  char number[32];
-  std::snprintf(number, sizeof(number), "%.3g", factor);
-  return text + ": " + number + " times as large";
+  return text + Format(": %.3g times as large", factor);
 }
 
 }  // namespace airdos

@@ -10,6 +10,7 @@
 #include "common/dataset/file_name.h"
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
@@ -101,12 +102,11 @@ std::vector<std::string> WithoutPartner(const ImageNames& of, const ImageNames& 
 }
 
 double MedianStep(const std::vector<std::uint64_t>& numbers) {
-  std::vector<std::uint64_t> steps;
-  for (std::size_t i = 1; i < numbers.size(); ++i) steps.push_back(numbers[i] - numbers[i - 1]);
-  if (steps.empty()) return 0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return static_cast<double>(*middle);
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    steps.push_back(static_cast<double>(numbers[i] - numbers[i - 1]));
+  }
+  return Quantile(std::move(steps), 0.5);
 }
 
 struct Unit {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "common/dataset/calib_json.h"
@@ -10,6 +9,7 @@
 #include "common/dataset/sequence_files.h"
 #include "common/dataset/times_file.h"
 #include "common/util/error.h"
+#include "common/util/format.h"
 #include "common/util/text_file.h"
 
 namespace airdos {
@@ -134,10 +134,8 @@ std::optional<std::size_t> FindImage(const std::vector<std::int64_t>& utimes, st
 }
 
 std::string RangeText(std::int64_t first_us, std::int64_t last_us) {
-  char text[80];
-  std::snprintf(text, sizeof(text), "%.3f .. %.3f s", 1e-6 * static_cast<double>(first_us),
+  return Format("%.3f .. %.3f s", 1e-6 * static_cast<double>(first_us),
                 1e-6 * static_cast<double>(last_us));
-  return text;
 }
 
 void FillPosesByTime(const std::string& path, const std::vector<TimedPose>& rows,

@@ -1,26 +1,18 @@
 #include "common/dataset/times_file.h"
 
-#include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <regex>
 
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
+#include "common/util/format.h"
+#include "common/util/quantile.h"
+#include "common/util/text_file.h"
 
 namespace airdos {
 namespace {
-
-/// A word for a message: not too long and without control characters.
-std::string Shown(std::string word) {
-  constexpr std::size_t kMaxShown = 60;
-  if (word.size() > kMaxShown) word = word.substr(0, kMaxShown) + "...";
-  std::replace_if(
-      word.begin(), word.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  return word;
-}
 
 std::string Joined(const TextLine& line) {
   std::string text;
@@ -103,17 +95,11 @@ std::vector<TimeRow> ReadRows(const std::string& path) {
 void CheckUnit(const std::string& path, const std::vector<TimeRow>& rows) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < rows.size(); ++i) steps.push_back(rows[i].value - rows[i - 1].value);
-  double median = 0;
-  if (!steps.empty()) {
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    median = *middle;
-  }
+  const double median = Quantile(std::move(steps), 0.5);
   const std::string unit = rows.empty() ? "" : OtherTimeUnit(rows[0].value, median);
   if (unit.empty()) return;
-  char step[32];
-  std::snprintf(step, sizeof(step), "%.6g", median);
-  throw InputError(path + WrongTimeUnit(unit, "'" + Shown(rows[0].text) + "', steps of " + step));
+  throw InputError(path + WrongTimeUnit(unit, "'" + Shown(rows[0].text) + "', steps of " +
+                                                  Format("%.6g", median)));
 }
 
 void CheckOrder(const std::string& path, const std::vector<TimeRow>& rows,

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
+
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -52,13 +53,7 @@ std::string TickText(double value, double step) {
   const int digits = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
   constexpr int kMostDigits = 5;
   const double shown = std::abs(value) < 1e-9 * step ? 0.0 : value;
-  char text[32];
-  if (digits > kMostDigits) {
-    std::snprintf(text, sizeof text, "%.3g", shown);
-  } else {
-    std::snprintf(text, sizeof text, "%.*f", digits, shown);
-  }
-  return text;
+  return digits > kMostDigits ? Format("%.3g", shown) : Format("%.*f", digits, shown);
 }
 
 /// Maps the units of the axes to pixels of the picture.

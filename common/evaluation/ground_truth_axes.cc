@@ -6,9 +6,9 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 
 #include "common/geometry/se3.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -194,14 +194,11 @@ std::string AxesDecision::Explain() const {
                            : uses_rotation                   ? "rotations"
                            : uses_translation                ? "displacements"
                                                              : "motions (there are hardly any)";
-  char text[300];
-  std::snprintf(text, sizeof text,
-                "%s of estimate and ground truth in body axes agree by %.3f if it is %s (%s), by "
-                "%.3f at most in other axes%s (1 = same, 0 = unrelated)",
-                what, agreement, axes.Name().c_str(),
-                axes.is_right_handed() ? "right-handed" : "left-handed", best_other,
-                alternatives.empty() ? "" : " but the alternatives named");
-  return text;
+  return Format(
+      "%s of estimate and ground truth in body axes agree by %.3f if it is %s (%s), by "
+      "%.3f at most in other axes%s (1 = same, 0 = unrelated)",
+      what, agreement, axes.Name().c_str(), axes.is_right_handed() ? "right-handed" : "left-handed",
+      best_other, alternatives.empty() ? "" : " but the alternatives named");
 }
 
 }  // namespace airdos

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <exception>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -12,8 +10,10 @@
 #include <utility>
 
 #include "common/util/error.h"
+#include "common/util/format.h"
 #include "common/util/input_file.h"
 #include "common/util/json_file.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
@@ -45,18 +45,7 @@ CappedRun ParseRun(const json& object) {
   return run;
 }
 
-/// Of sorted values, `share` of the way from the first to the last.
-double Quantile(const std::vector<double>& sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const std::size_t below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  const double part = place - static_cast<double>(below);
-  if (part == 0) return sorted[below];  // also avoids a product with infinity
-  return (1 - part) * sorted[below] + part * sorted[above];
-}
-
-Spread SpreadOf(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
+Spread SpreadOf(const std::vector<double>& values) {
   return {Quantile(values, 0.5), Quantile(values, 0.25), Quantile(values, 0.75)};
 }
 
@@ -90,12 +79,6 @@ HelpPoint MakePoint(const std::optional<int>& cap, const std::vector<Pair>& pair
     point.ratio_of_sums[figure] = Ratio(sum_on, sum_mask_only);
   }
   return point;
-}
-
-std::string Format(const char* format, double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
 }
 
 std::string RunsTable(const HelpCurve& curve) {

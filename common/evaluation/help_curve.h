@@ -34,7 +34,7 @@ std::vector<CappedRun> ReadCappedRuns(const std::string& path);
 /// Distribution of one figure over the sequences.
 struct Spread {
   double median = 0;
-  double lower_quartile = 0;  ///< quartiles between two values are interpolated
+  double lower_quartile = 0;  ///< as Quantile() of common/util/quantile.h has them
   double upper_quartile = 0;
 };
 

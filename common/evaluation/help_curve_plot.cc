@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <string>
 
 #include "common/evaluation/chart.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -69,9 +69,7 @@ cv::Mat DrawHelpCurve(const HelpCurve& curve) {
   rpe.y_label = "mm, logarithmic";
   for (const double mm :
        {0.01, 0.1, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0}) {
-    char name[20];
-    std::snprintf(name, sizeof name, "%g", mm);
-    rpe.y_ticks.push_back({std::log10(mm), name});
+    rpe.y_ticks.push_back({std::log10(mm), Format("%g", mm)});
   }
   DrawChart(rpe, {0, 0, kPanelWidth, kHeight}, &picture);
   Chart lost = MakeChart(curve, RunFigure::kLost, [](double percent) { return percent; });

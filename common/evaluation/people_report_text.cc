@@ -1,11 +1,10 @@
 // Formats people's errors as text and JSON.
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "common/evaluation/people_matching.h"
 #include "common/evaluation/people_report.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -26,16 +25,6 @@ constexpr std::array<const char*, kNumSegments> kSegmentNames = {"neck - right s
                                                                  "left thigh",
                                                                  "left shin",
                                                                  "neck - nose"};
-
-std::string Format(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string Format(const char* format, ...) {
-  char text[400];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
 
 std::string JointRow(const char* name, const JointErrors& errors) {
   return Format("  %-24s %8zu %9.4f %9.4f %6.1f %% %9.4f %9.4f %6.1f %%\n", name,

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <map>
@@ -10,6 +9,7 @@
 
 #include "common/evaluation/chart.h"
 #include "common/evaluation/speed_report.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -39,9 +39,7 @@ Chart GrowthChart(const std::vector<SolveTime>& solves, int SolveTime::*figure) 
   chart.y_label = "ms, logarithmic";
   chart.x_ticks = LogarithmicTicks(values);
   for (const double ms : {0.1, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0}) {
-    char name[20];
-    std::snprintf(name, sizeof name, "%g", ms);
-    chart.y_ticks.push_back({Logarithm(ms), name});
+    chart.y_ticks.push_back({Logarithm(ms), Format("%g", ms)});
   }
   for (auto& [name, line] : series) {
     line.name = name;

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
-#include <exception>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -13,6 +10,7 @@
 #include <tuple>
 
 #include "common/util/error.h"
+#include "common/util/format.h"
 #include "common/util/input_file.h"
 #include "common/util/json_file.h"
 
@@ -85,15 +83,6 @@ std::ifstream OpenText(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw InputError(path + ": cannot be read");
   return file;
-}
-
-__attribute__((format(printf, 1, 2))) std::string Format(const char* format, ...) {
-  char text[200];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
 }
 
 std::string ToText(const std::optional<double>& value) {

@@ -12,6 +12,7 @@
 #include "common/evaluation/trajectory_columns.h"
 #include "common/evaluation/trajectory_times.h"
 #include "common/util/error.h"
+#include "common/util/quantile.h"
 #include "common/util/text_file.h"
 
 namespace airdos {
@@ -29,14 +30,6 @@ struct Row {
 
 std::string Where(const std::string& path, int line) {
   return path + ":" + std::to_string(line) + ": ";
-}
-
-std::string Shown(const std::string& field) {
-  constexpr std::size_t kMostShown = 60;
-  std::string text = field.substr(0, kMostShown);
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  return text + (field.size() > kMostShown ? "..." : "");
 }
 
 /// The number in a field; nothing if the field denotes a missing value.
@@ -159,10 +152,7 @@ double MedianStep(const std::vector<Row*>& rows) {
     const Eigen::Vector3d& b = rows[i]->pose.position_m;
     if (!a.isZero(0) && !b.isZero(0)) steps_m.push_back((b - a).norm());
   }
-  if (steps_m.empty()) return 0;
-  const auto middle = steps_m.begin() + static_cast<std::ptrdiff_t>(steps_m.size() / 2);
-  std::nth_element(steps_m.begin(), middle, steps_m.end());
-  return *middle;
+  return Quantile(std::move(steps_m), 0.5);
 }
 
 /// Removes the position from rows exactly at the origin whose neighbour is many steps away: this is

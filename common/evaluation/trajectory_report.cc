@@ -2,24 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "common/evaluation/alignment.h"
 #include "common/evaluation/trajectory_doubts.h"
 #include "common/evaluation/trajectory_times.h"
 #include "common/util/error.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
 
 constexpr double kMetre = 1.0;
-
-std::string Decimals(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 Statistics AlignedError(const MatchedTrajectories& matched, const Similarity& similarity) {
   return ComputeStatistics(
@@ -79,9 +73,9 @@ void DecideReading(const Trajectory& estimate, const Trajectory& ground_truth,
       FindBetterReading(*matched, estimate.order, ground_truth.order);
   if (!doubt) return;
   const PoseReading& reading = doubt->reading;
-  const std::string evidence = "motions of both agree by " + Decimals("%.3f", doubt->agreement) +
+  const std::string evidence = "motions of both agree by " + Format("%.3f", doubt->agreement) +
                                " with " + Describe(reading, *report) + ", by " +
-                               Decimals("%.3f", doubt->agreement_as_read) + " as read";
+                               Format("%.3f", doubt->agreement_as_read) + " as read";
   if (reading.is_estimate_inverted || reading.is_truth_inverted) {
     const bool is_stated = options.is_estimate_inverted || options.is_truth_inverted;
     throw InputError(
@@ -114,9 +108,8 @@ void CheckGivenAxes(const MatchedTrajectories& matched, const AxesDecision& deci
   if (!decision.is_known || agreement > decision.best_agreement - kWorse) return;
   report->remarks.push_back(
       {true, "axes of the ground truth as given, " + report->axes.Name() +
-                 ": motions of both agree by " + Decimals("%.3f", agreement) +
-                 " only in them, by " + Decimals("%.3f", decision.agreement) + " if they are " +
-                 decision.axes.Name() +
+                 ": motions of both agree by " + Format("%.3f", agreement) + " only in them, by " +
+                 Format("%.3f", decision.agreement) + " if they are " + decision.axes.Name() +
                  ": rotation and relative pose figures are wrong if the axes are"});
 }
 
@@ -130,7 +123,7 @@ bool CheckContradiction(const MatchedTrajectories& matched, const AxesDecision& 
   }
   report->remarks.push_back(
       {true, "contradiction: the positions fit, but motions in body axes agree by " +
-                 Decimals("%.3f", decision.best_agreement) +
+                 Format("%.3f", decision.best_agreement) +
                  " only (1 = same): the rotations of one file are wrong or belong to another body "
                  "(order of the quaternion, an IMU instead of the camera?); do not trust "
                  "rotation and relative pose figures"});
@@ -241,7 +234,7 @@ void RemarkOnFigures(const MatchedTrajectories& matched, TrajectoryReport* repor
   for (const double factor : {1000.0, 100.0, 0.01, 0.001}) {
     if (std::abs(report->sim3_scale / factor - 1) > kSameUnit || !DoPositionsFit(matched)) continue;
     report->remarks.push_back({true, "the positions fit with a scale of " +
-                                         Decimals("%.4g", report->sim3_scale) +
+                                         Format("%.4g", report->sim3_scale) +
                                          ": those of one file are in mm or cm; convert them to m"});
   }
   const std::size_t num_frozen = CountFrozenPoses(matched);

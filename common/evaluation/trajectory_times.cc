@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
 #include "common/util/error.h"
+#include "common/util/format.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
@@ -24,24 +24,6 @@ constexpr double kSparseIntervalS = 10;
 constexpr double kSparseIntervalSinceEpochS = 400;
 constexpr double kMostRepeated = 0.1;
 constexpr double kFewRepeated = 0.005;
-
-std::string Format(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string Format(const char* format, ...) {
-  char text[400];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
-
-double Quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 std::vector<double> IntervalsOf(const std::vector<TrajectoryPose>& poses) {
   std::vector<double> intervals_s;

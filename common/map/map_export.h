@@ -52,7 +52,8 @@ std::vector<std::string> ExportMap(const FourDMap& map, const std::string& map_p
 std::optional<Se3> TorsoPose(const MapHuman& human);
 
 /// One line of people.jsonl without the newline: {"seq", "utime", "track", "joints": {id: [x, y,
-/// z]}, "measured": {…}, "segment_lengths_m": {number: length}}, with joints in W (m).
+/// z]}, "measured": {…}, "segment_lengths_m": {number: length}}, with joints in W (m) and the map's
+/// single-precision numbers exactly.
 std::string HumanToJson(FrameId frame, HumanId human, const MapHuman& state);
 
 /// A TUM row; the time in s has six decimals.

@@ -28,15 +28,6 @@ bool ReadLine(std::istream* stream, std::string* line) {
   return !line->empty();
 }
 
-/// For a one-line message: without control characters and not too long.
-std::string Shown(std::string word) {
-  constexpr std::size_t kMaxShown = 60;
-  if (word.size() > kMaxShown) word = word.substr(0, kMaxShown) + "...";
-  std::replace_if(
-      word.begin(), word.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  return word;
-}
-
 /// Windows editors start a file with a byte order mark (U+FEFF). That of UTF-8 is removed.
 void CheckEncoding(const std::string& path, std::string* first_line) {
   constexpr const char* kUtf8Mark = "\xEF\xBB\xBF";
@@ -55,6 +46,17 @@ void CheckEncoding(const std::string& path, std::string* first_line) {
 }
 
 }  // namespace
+
+std::string Printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  return text;
+}
+
+std::string Shown(const std::string& word) {
+  constexpr std::size_t kMaxShown = 60;
+  return Printable(word.substr(0, kMaxShown)) + (word.size() > kMaxShown ? "..." : "");
+}
 
 std::vector<TextLine> ReadTextLines(const std::string& path, std::string* heading) {
   RequireRegularFile(path);

@@ -19,6 +19,12 @@ struct TextLine {
 /// text of the last comment before the first line, which often names the columns.
 std::vector<TextLine> ReadTextLines(const std::string& path, std::string* heading = nullptr);
 
+/// Messages quote files, and no control character from a file may reach a terminal. Each becomes a
+/// question mark.
+std::string Printable(std::string text);
+/// A word from a file for a message: printable, and truncated if longer than 60 bytes.
+std::string Shown(const std::string& word);
+
 /// The words from index `first` on as finite numbers. Throws InputError naming file, line and word.
 std::vector<double> ParseNumbers(const std::string& path, const TextLine& line, std::size_t first);
 

@@ -23,15 +23,12 @@ source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 source "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
 readonly sequences=(testing/0018 testing/0028 training/0013 training/0014 training/0015 training/0019)
-readonly published_orb_slam=(0.933 2.033 1.547 0.176 0.240 2.633)
-readonly published_airdos=(0.934 2.027 1.618 0.172 0.234 2.760)
+readonly published_orb_slam='0.933 2.033 1.547 0.176 0.240 2.633'
+readonly published_airdos='0.934 2.027 1.618 0.172 0.234 2.760'
 
 modes='mask_only on' run_dir=$AIRDOS_RUNS/kitti_tracking jobs=$(num_cores)
 parse_options 'modes jobs run-dir set' "$@"
-((${#operands[@]} < 2)) || die_usage "more than one folder: '${operands[1]}' (see --help)"
-((${#operands[@]} == 1)) || die_usage "no folder given (see --help)"
-dataset=${operands[0]}
-[[ -d $dataset ]] || die_usage "no folder '$dataset'"
+need_dataset
 need_number --jobs "$jobs"
 need_modes "$modes"
 
@@ -53,50 +50,20 @@ done
   die_usage "'$dataset' contains none of the sequences: no training/image_02/0013 … (see --help)"
 need_benchmark_programs
 
+is_there() { [[ -d $(folder_of "$1") ]]; }
+
 # run_one SPLIT/NNNN MODE. The reader returns the ground truth in optical axes.
 run_one() {
   local name=$1 mode=$2 run=$run_dir/$1/$2
   replay_sequence "$name, $mode" "$(folder_of "$name")" "$run" --people "$mode" "${replay_options[@]}"
-  [[ -s $run/ground_truth.tum ]] || die "$name: no ground truth (oxts, calib)"
   evaluate_run "$name, $mode" "$run" --gt-axes optical
-}
-
-# cell SPLIT/NNNN MODE: ATE, with the share of frames with a pose if not all have one.
-cell() {
-  local file=$run_dir/$1/$2/evaluation.json completeness
-  if [[ ! -d $(folder_of "$1") ]]; then
-    echo missing
-  elif [[ ! -e $file ]]; then
-    echo failed
-  else
-    completeness=$(jq -r '100 * .completeness | floor' "$file")
-    printf '%.3f' "$(number_of ate_se3_m.rmse "$file")"
-    ((completeness == 100)) || printf ' (%d %%)' "$completeness"
-    echo
-  fi
-}
-
-print_table() {
-  local name mode
-  printf '| ATE m, with masks |' && printf ' %s |' "${sequences[@]}" && echo
-  printf '|---|' && printf '%.0s---|' "${sequences[@]}" && echo
-  printf '| ORB-SLAM, published |' && printf ' %s |' "${published_orb_slam[@]}" && echo
-  printf '| AirDOS, published |' && printf ' %s |' "${published_airdos[@]}" && echo
-  for mode in $modes; do
-    printf '| ours, people %s |' "$mode"
-    for name in "${sequences[@]}"; do printf ' %s |' "$(cell "$name" "$mode")"; done
-    echo
-  done
 }
 
 mkdir -p "$run_dir"
 trap end_jobs EXIT
-for name in "${present[@]}"; do
-  for mode in $modes; do start_job "$jobs" run_one "$name" "$mode"; done
-done
-wait_for_jobs
-print_table > "$run_dir/kitti_tracking.md"
+start_runs wait_for_jobs '' present mode_list
+ate_table 'ATE m, with masks' 3 "ORB-SLAM $published_orb_slam" "AirDOS $published_airdos" > "$run_dir/kitti_tracking.md"
 cat "$run_dir/kitti_tracking.md"
 ((${#missing[@]} == 0)) || say "not in '$dataset': ${missing[*]}"
 ((${#without_people[@]} == 0)) || say "no files of people, so people change nothing: ${without_people[*]}"
-((failed_jobs == 0)) || die "$failed_jobs of the runs failed"
+finish_jobs

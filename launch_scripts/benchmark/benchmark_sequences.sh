@@ -25,9 +25,8 @@ need_benchmark_programs
 
 # run_one FOLDER MODE: one row of the table.
 run_one() {
-  local folder=$1 mode=$2 name run evaluation timing
-  name=$(basename "$folder")
-  run=$run_dir/$name/$mode
+  local folder=$1 mode=$2 name=${1##*/} run evaluation timing
+  run=$(run_of "$@")
   replay_sequence "$name, $mode" "$folder" "$run" --people "$mode" --out "$run/output.lcm" "${replay_options[@]}"
   evaluate_run "$name, $mode" "$run"
   evaluation=$run/evaluation.json timing=$run/timing.json
@@ -42,6 +41,4 @@ run_one() {
 
 echo '| sequence | people | frames posed | ATE m | RPE m | RPE deg | drift % | ms |'
 echo '|---|---|---|---|---|---|---|---|'
-for folder in "${folders[@]}"; do
-  for mode in $modes; do run_one "$folder" "$mode"; done
-done
+for_each folders mode_list -- run_one

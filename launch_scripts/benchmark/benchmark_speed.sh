@@ -71,9 +71,8 @@ run_live() {
 
 # run_one FOLDER: writes the row of runs.jsonl to the run's folder.
 run_one() {
-  local folder=$1 name run
-  name=$(basename "$folder")
-  run=$run_dir/$name
+  local folder=$1 name=${1##*/} run
+  run=$(run_of "$folder")
   mkdir -p "$run"
   run_replay "$name" "$folder" "$run" 1
   run_replay "$name" "$folder" "$run" auto
@@ -92,12 +91,8 @@ run_one() {
 
 mkdir -p "$run_dir"
 trap end_jobs EXIT
-rows=()
-for folder in "${folders[@]}"; do
-  run_one "$folder"
-  rows+=("$run_dir/$(basename "$folder")/row.json")
-done
-cat "${rows[@]}" > "$run_dir/runs.jsonl"
+for_each folders -- run_one
+collect_rows folders
 
 solver_options=()
 if [[ $solver == yes && -x $AIRDOS_BIN/airdos_solver_benchmark ]]; then

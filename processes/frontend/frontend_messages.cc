@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "processes/node/message/conversions.h"
+#include "processes/node/message/header.h"
 
 namespace airdos {
 namespace {
@@ -27,10 +28,7 @@ std::int8_t ToMessage(TrackingState state) {
 
 static_features_t ToStaticFeatures(const Header& header, std::int64_t odometry_start_seq,
                                    const OdometryFrame& frame) {
-  static_features_t message;
-  message.utime = header.utime;
-  message.seq = header.seq;
-  message.session = header.session;
+  auto message = MessageOf<static_features_t>(header);
   message.tracking_state = ToMessage(frame.state);
   FromSe3(frame.T_O_C, message.position_O_C, message.orientation_O_C);
   message.odometry_start_seq = odometry_start_seq;
@@ -63,11 +61,10 @@ std::vector<HumanMeasurement> ToHumanMeasurements(const human_observations_t& me
   for (const human_observation_t& human : message.humans) {
     HumanMeasurement person{HumanId{human.track_id}, {}};
     for (std::size_t i = 0; i < human.joint_id.size(); ++i) {
-      const std::vector<float>& s = human.covariance_C[i];
       HumanMeasurement::Joint joint;
       joint.joint = human.joint_id[i];
       joint.p_C = {human.x_C_m[i], human.y_C_m[i], human.z_C_m[i]};
-      joint.covariance_C << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+      joint.covariance_C = ToCovariance(human.covariance_C[i]);
       const bool is_covariance =
           Eigen::LLT<Eigen::Matrix3d>(joint.covariance_C).info() == Eigen::Success;
       if (joint.p_C.allFinite() && joint.covariance_C.allFinite() && is_covariance) {

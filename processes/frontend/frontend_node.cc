@@ -5,6 +5,7 @@
 
 #include "common/human/body_mask.h"
 #include "processes/frontend/frontend_messages.h"
+#include "processes/node/message/header.h"
 #include "processes/node/message/image_codec.h"
 #include "processes/node/message/keypoint_messages.h"
 
@@ -31,21 +32,19 @@ FrontendNode::FrontendNode(const FrontendOptions& options)
 std::string FrontendNode::ReceiveUpdate(map_update_t&& message) {
   if (!session_ || message.session != *session_) return "of another session";
   const std::int64_t seq = message.seq;
-  const auto num_parts = static_cast<std::size_t>(message.num_parts);
   const bool is_expected = std::find(published_.begin(), published_.end(), seq) != published_.end();
   // The optimizer has given up a frame that is yet to be published, so whatever that frame waits
   // for was lost. Only for the next few frames: a single wrong number must not end the waiting.
   const std::int64_t ahead = published_.empty() ? 0 : seq - published_.back();
   if (ahead > 0 && ahead <= options_.feedback_lag_frames) is_feedback_silent_ = true;
   if (!is_expected) return "too late, or for a frame that was not published";
-  UpdateParts& parts = updates_[seq];
-  const int part = message.part;
-  parts[part] = std::move(message);
-  if (parts.size() >= num_parts) {
+  PartSet<map_update_t>& update = updates_[seq];
+  const std::string refusal = update.Add(std::move(message));
+  if (update.is_complete()) {
     newest_update_ = std::max(newest_update_, seq);
     is_feedback_silent_ = false;
   }
-  return "";
+  return refusal;
 }
 
 std::optional<std::int64_t> FrontendNode::RequiredUpdate() const {
@@ -81,28 +80,22 @@ void FrontendNode::ApplyUpdates() {
   const std::optional<std::int64_t> required = RequiredUpdate();
   if (!required) return;
   if (newest_update_ < *required) is_feedback_silent_ = true;
-  const auto parts_of_required = updates_.find(*required);
-  const bool is_complete = parts_of_required != updates_.end() &&
-                           static_cast<std::int32_t>(parts_of_required->second.size()) ==
-                               parts_of_required->second.begin()->second.num_parts;
-  if (!is_complete) ++counters(channel::kMapUpdate).num_missing;
+  const auto of_required = updates_.find(*required);
+  if (of_required == updates_.end() || !of_required->second.is_complete()) {
+    ++counters(channel::kMapUpdate).num_missing;
+  }
   while (!updates_.empty() && updates_.begin()->first <= *required) {
-    const auto& [seq, parts] = *updates_.begin();
-    MapCorrection correction;
-    correction.newest = FrameId{seq};
-    for (const auto& [number, part] : parts) AddTo(part, &correction);
-    if (static_cast<std::int32_t>(parts.size()) == parts.begin()->second.num_parts)
+    auto& [seq, update] = *updates_.begin();
+    if (update.is_complete()) {
+      MapCorrection correction;
+      correction.newest = FrameId{seq};
+      for (const map_update_t& part : update.Take()) AddTo(part, &correction);
       odometry_->Apply(correction);
+    }
     updates_.erase(updates_.begin());
   }
 }
 
-bool FrontendNode::Fits(const std::optional<cv::Mat>& image, const char* channel,
-                        const std::string& reason) {
-  if (image && image->size() == cv::Size(camera().width, camera().height)) return true;
-  ++counters(channel).num_rejected;
-  counters(channel).last_reject = image ? "its size is not that of the calibration" : reason;
-  return false;
 }
 
 cv::Mat FrontendNode::Mask(const FrontendInputs& inputs) {

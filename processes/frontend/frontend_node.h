@@ -20,6 +20,7 @@
 #include "processes/frontend/frontend_options.h"
 #include "processes/frontend/input_watch.h"
 #include "processes/node/frame_node.h"
+#include "processes/node/message/part_set.h"
 #include "processes/node/partner_watch.h"
 
 namespace airdos {
@@ -64,7 +65,6 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   /// The frame whose update must arrive before the next frame can start.
   std::optional<std::int64_t> RequiredUpdate() const;
   void ApplyUpdates();
-  bool Fits(const std::optional<cv::Mat>& image, const char* channel, const std::string& reason);
   /// Where people are, from masks or otherwise from keypoints; empty if there is neither.
   cv::Mat Mask(const FrontendInputs& inputs);
   std::optional<StereoImagePair> Images(const Header& header, const FrontendInputs& inputs);
@@ -78,9 +78,8 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   std::optional<std::int64_t> session_;
   std::vector<std::int64_t>
       published_;  // image numbers of the last feedback_lag_frames frames, oldest first
-  using UpdateParts = std::map<int, map_update_t>;
-  std::map<std::int64_t, UpdateParts> updates_;  // of this session, keyed by seq
-  std::int64_t newest_update_ = -1;              // complete
+  std::map<std::int64_t, PartSet<map_update_t>> updates_;  // of this session, keyed by seq
+  std::int64_t newest_update_ = -1;                        // complete
   bool is_feedback_silent_ =
       false;  // a frame had or has to start without an update: do not wait until one comes
 };

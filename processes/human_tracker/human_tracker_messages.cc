@@ -4,6 +4,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "processes/node/message/conversions.h"
+#include "processes/node/message/header.h"
+
 namespace airdos {
 namespace {
 
@@ -23,13 +26,7 @@ human_observation_t ToMessage(const TrackedHuman& human) {
     message.x_C_m.push_back(as_float(seen->p_C.x()));
     message.y_C_m.push_back(as_float(seen->p_C.y()));
     message.z_C_m.push_back(as_float(seen->p_C.z()));
-    const Eigen::Matrix3d& c = seen->covariance_C;
-    message.covariance_C.emplace_back();
-    for (int row = 0; row < 3; ++row) {
-      for (int column = row; column < 3; ++column) {
-        message.covariance_C.back().push_back(as_float(c(row, column)));
-      }
-    }
+    message.covariance_C.push_back(FromCovariance(seen->covariance_C));
   }
   message.num_joints = static_cast<int32_t>(message.joint_id.size());
   return message;
@@ -39,10 +36,7 @@ human_observation_t ToMessage(const TrackedHuman& human) {
 
 human_observations_t ToHumanObservations(const Header& header, const PeopleFrame& frame,
                                          const TrackedFrame& tracked) {
-  human_observations_t message{};
-  message.utime = header.utime;
-  message.seq = header.seq;
-  message.session = header.session;
+  auto message = MessageOf<human_observations_t>(header);
   message.num_detected_left = static_cast<int32_t>(frame.left.size());
   message.num_detected_right = static_cast<int32_t>(frame.right.size());
   message.num_rejected = static_cast<int32_t>(tracked.num_rejected);

@@ -8,6 +8,8 @@
 
 #include "processes/human_tracker/human_tracker_messages.h"
 #include "processes/node/message/channels.h"
+#include "processes/node/message/conversions.h"
+#include "processes/node/message/header.h"
 #include "processes/node/message/image_codec.h"
 #include "processes/node/message/keypoint_messages.h"
 
@@ -37,14 +39,6 @@ void HumanTrackerNode::StartSession(const Header& header) {
   constexpr std::int64_t kMostPerFrame = 1000;  // Validate() accepts up to 200 people per image
   tracker_ = std::make_unique<HumanTracker>(options_,
                                             HumanId{FirstRunningNumber(header.seq, kMostPerFrame)});
-}
-
-bool HumanTrackerNode::Fits(const std::optional<cv::Mat>& image, const char* channel,
-                            const std::string& reason) {
-  if (image && image->size() == cv::Size(camera().width, camera().height)) return true;
-  ++counters(channel).num_rejected;
-  counters(channel).last_reject = image ? "its size is not that of the calibration" : reason;
-  return false;
 }
 
 void HumanTrackerNode::WatchKeypoints(const HumanTrackerInputs& inputs, const PeopleFrame& frame) {
@@ -88,8 +82,6 @@ void HumanTrackerNode::ProcessFrame(const Header& header, HumanTrackerInputs inp
   Publish(channel::kHumanObservations, ToHumanObservations(header, frame, tracked));
 }
 
-std::unique_ptr<Node> MakeHumanTrackerNode(ConfigReader* config) {
-  return std::make_unique<HumanTrackerNode>(ReadHumanTrackerOptions(config));
 }
 
 }  // namespace airdos

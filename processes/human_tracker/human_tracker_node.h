@@ -44,8 +44,6 @@ class HumanTrackerNode : public FrameNode<HumanTrackerInputs> {
     PeopleWatch people;
   };
   void WatchKeypoints(const HumanTrackerInputs& inputs, const PeopleFrame& frame);
-  /// Whether the image has the size that the calibration says; counts a reject otherwise.
-  bool Fits(const std::optional<cv::Mat>& image, const char* channel, const std::string& reason);
 
   HumanTrackerOptions options_;
   std::unique_ptr<HumanTracker> tracker_;

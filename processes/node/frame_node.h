@@ -17,6 +17,7 @@
 #include "processes/node/frame_joiner.h"
 #include "processes/node/message/channels.h"
 #include "processes/node/message/conversions.h"
+#include "processes/node/message/part_set.h"
 #include "processes/node/node.h"
 #include "processes/node/stray_watch.h"
 
@@ -112,16 +113,17 @@ class FrameNode : public Node {
   template <class Message>
   void JoinParts(const std::string& channel, std::vector<Message> Inputs::*field) {
     const int input = AddInput(channel);
-    const auto set = std::make_shared<PartSet<Message>>();
+    const auto set = std::make_shared<PartsOfFrame<Message>>();
     Subscribe<Message>(channel, [this, input, field, set](Message&& message) {
       const Header header = HeaderOf(message);
       FrameJoiner::Key key;
       const FrameJoiner::Arrival arrival = Joiner().Announce(input, header, &key);
       if (arrival != FrameJoiner::Arrival::kNew) return Refused(arrival, input, header);
       if (set->parts.empty() || set->key < key || key < set->key) *set = {key, {}};
-      return AddPart(std::move(message), set.get(), [&](std::vector<Message>&& parts) {
-        Arrived(input, header, [&](Inputs& inputs) { inputs.*field = std::move(parts); });
-      });
+      const std::string refusal = set->parts.Add(std::move(message));
+      if (!refusal.empty() || !set->parts.is_complete()) return refusal;
+      std::vector<Message> parts = set->parts.Take();
+      return Arrived(input, header, [&](Inputs& inputs) { inputs.*field = std::move(parts); });
     });
   }
 
@@ -161,34 +163,26 @@ class FrameNode : public Node {
   /// Calibration of the frame being processed.
   const StereoCamera& camera() const { return camera_; }
 
+  /// Whether an image (cv::Mat) of the frame in work decoded, and has the size that the calibration
+  /// says. Counts it as rejected otherwise; `reason` says why it did not decode.
+  template <class Image>
+  bool Fits(const std::optional<Image>& image, const std::string& channel,
+            const std::string& reason) {
+    if (image && image->cols == camera_.width && image->rows == camera_.height) return true;
+    Reject(channel, image ? "its size is not that of the calibration" : reason);
+    return false;
+  }
+
  private:
   struct Slot {
     Inputs inputs;
     std::size_t num_bytes = 0;  // of the messages that they arrived in
   };
   template <class Message>
-  struct PartSet {
+  struct PartsOfFrame {
     FrameJoiner::Key key;
-    std::map<int, Message> parts;
+    PartSet<Message> parts;
   };
-
-  template <class Message, class Deliver>
-  std::string AddPart(Message&& message, PartSet<Message>* set, Deliver deliver) {
-    const int part = message.part;
-    const int num_parts = message.num_parts;
-    if (!set->parts.empty() && set->parts.begin()->second.num_parts != num_parts) {
-      return "num_parts " + std::to_string(num_parts) + " differs from that of another part";
-    }
-    if (!set->parts.emplace(part, std::forward<Message>(message)).second) {
-      return "part " + std::to_string(part) + " came twice";
-    }
-    if (static_cast<int>(set->parts.size()) < num_parts) return "";
-    std::vector<Message> parts;
-    for (auto& [number, content] : set->parts) parts.push_back(std::move(content));
-    set->parts.clear();
-    deliver(std::move(parts));
-    return "";
-  }
 
   int AddInput(const std::string& channel) {
     AIRDOS_CHECK(joiner_ == nullptr);

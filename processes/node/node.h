@@ -117,6 +117,8 @@ class Node {
   void DeclareOutput(const std::string& channel) { output_channels_.push_back(channel); }
 
   void Warn(const std::string& warning);
+  /// Counts a message of the channel as rejected, and remembers why.
+  void Reject(const std::string& channel, const std::string& reason);
 
   template <class Message>
   void Publish(const std::string& channel, const Message& message) {

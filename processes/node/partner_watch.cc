@@ -1,8 +1,9 @@
 #include "processes/node/partner_watch.h"
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
+
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
@@ -10,13 +11,6 @@ namespace {
 constexpr double kMaxShareWithout = 0.2;  // a camera that loses more deserves a warning
 constexpr double kMaxStep = 0.5;          // relative to the time between two images
 constexpr double kMinOffset_us = 2000;
-
-double Median(std::vector<double>* values) {
-  if (values->empty()) return 0;
-  const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -66,8 +60,8 @@ std::string PartnerWatch::JudgeNumbers(std::int64_t session, const StrayWatch& l
 }
 
 std::string PartnerWatch::JudgeTimes() {
-  const double offset_us = Median(&offsets_us_);
-  if (offset_us < kMinOffset_us || offset_us < kMaxStep * Median(&steps_us_)) return "";
+  const double offset_us = Quantile(offsets_us_, 0.5);
+  if (offset_us < kMinOffset_us || offset_us < kMaxStep * Quantile(steps_us_, 0.5)) return "";
   are_times_said_ = true;
   std::ostringstream text;
   text << channel_ << " is " << 1e-6 * offset_us << " s away from the left image of the same "

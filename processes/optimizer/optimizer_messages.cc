@@ -53,9 +53,7 @@ void AddFeatures(const static_features_t& message, FrameInput* input) {
 /// it is no covariance.
 std::optional<Eigen::Matrix3d> ImageCovariance(const StereoCamera& camera,
                                                const human_observation_t& message, std::size_t i) {
-  const std::vector<float>& s = message.covariance_C[i];
-  Eigen::Matrix3d S;
-  S << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+  const Eigen::Matrix3d S = ToCovariance(message.covariance_C[i]);
   const Eigen::Vector3d p_C(message.x_C_m[i], message.y_C_m[i], message.z_C_m[i]);
   if (!S.allFinite() || !p_C.allFinite() || !(p_C.z() > 0)) return std::nullopt;
   const Eigen::Matrix3d J = camera.ProjectStereoJacobian(p_C);
@@ -205,10 +203,7 @@ class PartWriter {
 
  private:
   void StartPart() {
-    map_update_t part{};
-    part.utime = header_.utime;
-    part.seq = header_.seq;
-    part.session = header_.session;
+    auto part = MessageOf<map_update_t>(header_);
     part.part = static_cast<std::int32_t>(parts_.size());
     parts_.push_back(part);
     num_bytes_ = 0;
@@ -248,10 +243,7 @@ FrameInput ToFrameInput(const Header& header, const StereoCamera& camera,
 }
 
 state_estimate_t ToStateEstimate(const Header& header, const FrameEstimate& estimate) {
-  state_estimate_t message{};
-  message.utime = header.utime;
-  message.seq = header.seq;
-  message.session = header.session;
+  auto message = MessageOf<state_estimate_t>(header);
   message.status = ToStatus(estimate.status);
   FromSe3(estimate.T_W_C, message.position_W_C, message.orientation_W_C);
   const auto covariance = Published(estimate.covariance);

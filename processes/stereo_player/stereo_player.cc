@@ -10,21 +10,13 @@
 #include "common/util/error.h"
 #include "processes/node/message/channels.h"
 #include "processes/node/message/conversions.h"
+#include "processes/node/message/header.h"
 #include "processes/node/message/keypoint_messages.h"
 
 namespace airdos {
 namespace {
 
 constexpr std::int64_t kCalibrationPeriod_us = 1000000;
-
-template <class Message>
-Message MessageOf(const Header& header) {
-  Message message = {};
-  message.utime = header.utime;
-  message.seq = header.seq;
-  message.session = header.session;
-  return message;
-}
 
 /// Throws if a receiver would reject the message: the data set is at fault, not the network. `file`
 /// is what the message was made from, or empty.

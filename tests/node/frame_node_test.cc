@@ -12,6 +12,7 @@
 #include "airdos/map_update_t.hpp"
 #include "airdos/person_mask_t.hpp"
 #include "airdos/pose_t.hpp"
+#include "processes/node/message/header.h"
 #include "tests/support/echo_node.h"
 
 namespace airdos {
@@ -58,11 +59,7 @@ class ScribeNode : public FrameNode<Inputs> {
 
 template <class Message>
 Message MessageAt(std::int64_t seq, std::int64_t session) {
-  Message message = {};
-  message.utime = 1000 * seq;
-  message.seq = seq;
-  message.session = session;
-  return message;
+  return MessageOf<Message>({1000 * seq, seq, session});
 }
 
 Envelope Mask(std::int64_t seq, std::int64_t session = 7) {

@@ -4,6 +4,8 @@
 
 #include <map>
 
+#include "processes/node/message/header.h"
+
 namespace airdos {
 namespace {
 
@@ -11,11 +13,7 @@ const StereoCamera kCamera = SmallStereoCamera();
 
 template <class Message>
 Message WithHeader(std::int64_t seq, std::int64_t session) {
-  Message message{};
-  message.utime = 5'000'000 + 100'000 * seq;
-  message.seq = seq;
-  message.session = session;
-  return message;
+  return MessageOf<Message>({5'000'000 + 100'000 * seq, seq, session});
 }
 
 }  // namespace

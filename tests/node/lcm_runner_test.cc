@@ -30,7 +30,7 @@ TEST(LcmRunnerTest, SkippedImagesGetNoFrameDone) {
   options.process = "echo";
   options.pace = LcmRunnerOptions::Pace::kRealtime;
   options.publishes_frame_done = true;
-  std::ostringstream log;
+  const ProcessLog log("p", LogLevel::kError);
   LcmRunner runner(&node, &transport, options, &log);
   runner.Start();
   const auto say = [&](const char* channel, const auto& message) {

@@ -13,6 +13,7 @@
 
 #include "common/util/digest.h"
 #include "common/util/error.h"
+#include "processes/node/message/header.h"
 #include "processes/optimizer/optimizer_messages.h"
 #include "tests/support/synthetic_scene.h"
 
@@ -43,11 +44,8 @@ SyntheticScene Scene(int num_frames) {
 
 template <class Message>
 Message WithHeader(const FrameInput& input) {
-  Message message{};
-  message.utime = static_cast<std::int64_t>(std::llround(input.time_s * 1e6));
-  message.seq = input.id.value;
-  message.session = 7;
-  return message;
+  return MessageOf<Message>(
+      {static_cast<std::int64_t>(std::llround(input.time_s * 1e6)), input.id.value, 7});
 }
 
 static_features_t Features(const FrameInput& input) {

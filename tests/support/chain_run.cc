@@ -15,6 +15,7 @@
 #include "airdos/state_estimate_t.hpp"
 #include "common/evaluation/people_matching.h"
 #include "common/map/four_d_map.h"
+#include "common/util/quantile.h"
 #include "processes/node/log/event_log.h"
 #include "processes/node/message/channels.h"
 #include "processes/node/message/codec.h"
@@ -88,12 +89,6 @@ PeopleUse UseOfPeople(const std::string& log) {
                       &use.motion_factors, &use.reprojection_eliminated})
     *sum /= num_frames;
   return use;
-}
-
-double MedianOf(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 /// Step of the middle of the joints that define a torso's motion, if both frames have all of them.
@@ -190,7 +185,7 @@ VelocityErrors ErrorsOfVelocity(const std::vector<FrameOfPeople>& frames) {
       speeds.push_back(moved_C.norm() / step_s);
     }
   }
-  return {errors.size(), MedianOf(errors), MedianOf(speeds)};
+  return {errors.size(), Quantile(errors, 0.5), Quantile(speeds, 0.5)};
 }
 
 void EvaluateTruth(const RunFolder& folder, const PeopleTruth& truth, ChainRun* run) {

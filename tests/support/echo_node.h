@@ -33,10 +33,7 @@ class EchoNode : public FrameNode<EchoInputs> {
  protected:
   void StartSession(const Header&) override {}
   void ProcessFrame(const Header& header, EchoInputs inputs) override {
-    pose_t message = {};
-    message.utime = header.utime;
-    message.seq = header.seq;
-    message.session = header.session;
+    auto message = MessageOf<pose_t>(header);
     message.axes = pose_t::AXES_UNKNOWN;
     message.orientation[0] = 1;
     message.position[0] = inputs.left ? scale_ * inputs.left->num_bytes : -1;

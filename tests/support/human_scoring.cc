@@ -17,6 +17,7 @@
 #include "common/dataset/stereo_sequence.h"
 #include "common/human/assignment.h"
 #include "common/human/layouts.h"
+#include "common/util/quantile.h"
 #include "tests/support/crossing_truth.h"
 
 namespace airdos {
@@ -25,12 +26,6 @@ namespace {
 constexpr int kMinVisibleJoints = 5;
 constexpr double kMinHeightPx = 45;
 constexpr double kMaxMatchPerHeight = 0.15;  // mean distance of joints, relative to the height
-
-double Percentile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
 
 double Mean(const std::vector<double>& values) {
   return values.empty() ? 0
@@ -212,7 +207,7 @@ double HumanScore::PairRecall() const {
 
 double HumanScore::MeanJointError() const { return Mean(joint_error_m); }
 
-double HumanScore::MedianJointError() const { return Percentile(joint_error_m, 0.5); }
+double HumanScore::MedianJointError() const { return Quantile(joint_error_m, 0.5); }
 
 std::string HumanScore::TableHead() {
   return "sequence        paired% wrong% | found% false% joints swap% | err med  mean   <6m  6-12  "
@@ -228,12 +223,12 @@ std::string HumanScore::Table() const {
       "%4d %5d  %.3f %.3f %.3f | %5.1f %5.1f",
       name.c_str(), 100 * PairRecall(), percent(num_wrong_pairs, num_pairs),
       percent(num_visible_found, num_visible), percent(num_false, num_reported), num_joints,
-      percent(num_swapped_sides, num_reported), Percentile(joint_error_m, 0.5), MeanJointError(),
-      Percentile(joint_error_by_depth_m[0], 0.5), Percentile(joint_error_by_depth_m[1], 0.5),
-      Percentile(joint_error_by_depth_m[2], 0.5), Percentile(depth_bias_m, 0.5),
+      percent(num_swapped_sides, num_reported), Quantile(joint_error_m, 0.5), MeanJointError(),
+      Quantile(joint_error_by_depth_m[0], 0.5), Quantile(joint_error_by_depth_m[1], 0.5),
+      Quantile(joint_error_by_depth_m[2], 0.5), Quantile(depth_bias_m, 0.5),
       num_normalised == 0 ? 0 : sum_normalised_squared / (3 * num_normalised), identity.num_people,
       identity.num_switches, identity.idf1, identity.id_precision, identity.id_recall,
-      Percentile(frame_ms, 0.5), Percentile(frame_ms, 0.95));
+      Quantile(frame_ms, 0.5), Quantile(frame_ms, 0.95));
   return line.data();
 }
 

@@ -7,32 +7,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "tests/support/rendered_scene.h"
+#include "tests/support/standing_person.h"
 
 namespace airdos {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A person facing the camera, 100 px tall, in COCO-18 order: position of each joint relative to
-/// the neck.
-constexpr std::array<std::array<double, 2>, 18> kStanding = {{{0, -12},
-                                                              {0, 0},
-                                                              {-10, 1},
-                                                              {-14, 18},
-                                                              {-15, 34},
-                                                              {10, 1},
-                                                              {14, 18},
-                                                              {15, 34},
-                                                              {-6, 32},
-                                                              {-7, 58},
-                                                              {-7, 84},
-                                                              {6, 32},
-                                                              {7, 58},
-                                                              {7, 84},
-                                                              {-2, -14},
-                                                              {2, -14},
-                                                              {-4, -13},
-                                                              {4, -13}}};
 
 SmallSequence::Row PersonAt(double u_px, double v_px) {
   SmallSequence::Row row;

@@ -177,6 +177,7 @@ bool FactorisePanel(double* panel, int n, int width, int stride) {
 }
 
 AddProduct FindAddProduct(int rows, int a, int b) {
+  for (const int size : {a, b}) AIRDOS_CHECK(size == 1 || size == 3 || size == 6);
   switch (rows) {
     case 1:
       return FindAddProduct<1>(a, b);

@@ -26,7 +26,8 @@ bool FactorisePanel(double* panel, int n, int width, int stride);
 /// Hessian.
 using AddProduct = void (*)(const double* A, int stride_a, const double* B, int stride_b,
                             double* C);
-/// For 1 to 6 rows; a and b of 1, 3 or 6.
+/// For 1 to 6 rows; a and b of 1, 3 or 6. Ends the process on others: a product of the wrong size
+/// would write beyond C.
 AddProduct FindAddProduct(int rows, int a, int b);
 
 }  // namespace airdos

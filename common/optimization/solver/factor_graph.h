@@ -31,7 +31,9 @@ class FactorGraph {
     static constexpr int kWholeTrack = -1;
 
     double* values = nullptr;
-    int size = 3;  ///< of `values`; kPoseBlockSize is a rigid motion, with PoseManifold
+    /// Of `values`: 1, 3, or kPoseBlockSize for a rigid motion, with PoseManifold. dense_kernels.h
+    /// has products for blocks of these sizes only; another size must be added there first.
+    int size = 3;
     Kind kind = Kind::kPose;
     bool is_constant = false;
     int track = 0;            ///< kTrack: its track
@@ -49,14 +51,16 @@ class FactorGraph {
     bool is_removed = false;
   };
 
-  /// Each returns the index of the new element.
+  /// Both return the index of the new element. Fails a check, in every build type, on a programming
+  /// error: a block without values or with another size than above; a factor without residuals or
+  /// with more than kMaxResiduals, or with blocks that do not exist or differ in size from what its
+  /// cost function says.
   int AddBlock(const Block& block);
   template <class... Blocks>
   int AddFactor(std::unique_ptr<ceres::CostFunction> cost, const ceres::LossFunction* loss,
                 Blocks... blocks) {
     static_assert(sizeof...(blocks) <= kMaxBlocks);
-    factors_.push_back({std::move(cost), loss, sizeof...(blocks), {blocks...}, false});
-    return static_cast<int>(factors_.size()) - 1;
+    return AddFactor({std::move(cost), loss, sizeof...(blocks), {blocks...}, false});
   }
   void SetConstant(int block) { blocks_[static_cast<std::size_t>(block)].is_constant = true; }
   /// A removed factor keeps its index but no longer counts.
@@ -72,6 +76,8 @@ class FactorGraph {
   double SquaredError(int factor) const;
 
  private:
+  int AddFactor(Factor factor);
+
   std::vector<Block> blocks_;
   std::vector<Factor> factors_;
 };

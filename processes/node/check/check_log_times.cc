@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/check/check_times.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {

@@ -12,6 +12,7 @@
 #include "common/util/version.h"
 #include "processes/node/log/log_source.h"
 #include "processes/node/message/channels.h"
+#include "processes/node/message/header.h"
 #include "processes/node/message/types_fingerprint.h"
 
 namespace airdos {
@@ -238,10 +239,7 @@ void LcmRunner::SayFrame(double latency_ms) {
 
 void LcmRunner::PublishFrameDone() {
   if (!node_->last_finished()) return;
-  frame_done_t message = {};
-  message.utime = node_->last_finished()->utime;
-  message.seq = node_->last_finished()->seq;
-  message.session = node_->last_finished()->session;
+  auto message = MessageOf<frame_done_t>(*node_->last_finished());
   message.process = options_.process;
   Publish(channel::kFrameDone, message);
 }
@@ -254,12 +252,7 @@ void LcmRunner::PublishStatusWhenDue() {
 }
 
 void LcmRunner::PublishStatus(std::int8_t state) {
-  process_status_t status = {};
-  if (node_->last_finished()) {
-    status.utime = node_->last_finished()->utime;
-    status.seq = node_->last_finished()->seq;
-    status.session = node_->last_finished()->session;
-  }
+  auto status = MessageOf<process_status_t>(node_->last_finished().value_or(Header()));
   status.process = options_.process;
   status.version = kVersion;
   status.types_fingerprint = TypesFingerprint();

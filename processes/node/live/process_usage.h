@@ -21,7 +21,7 @@ class RecentValues {
  public:
   explicit RecentValues(std::size_t capacity) : capacity_(capacity) {}
   void Add(double value);
-  /// `fraction` is 0..1; nearest rank; 0 if there are no values yet.
+  /// Their Quantile(); `fraction` is 0..1; 0 if there are no values yet.
   double Percentile(double fraction) const;
 
  private:

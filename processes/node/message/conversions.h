@@ -1,6 +1,8 @@
 #ifndef AIRDOS_PROCESSES_NODE_MESSAGE_CONVERSIONS_H_
 #define AIRDOS_PROCESSES_NODE_MESSAGE_CONVERSIONS_H_
 
+#include <vector>
+
 #include "airdos/stereo_calibration_t.hpp"
 #include "common/geometry/se3.h"
 #include "common/geometry/stereo_camera.h"
@@ -12,6 +14,11 @@ namespace airdos {
 
 StereoCamera ToStereoCamera(const stereo_calibration_t& message);
 void FromStereoCamera(const StereoCamera& camera, stereo_calibration_t* message);
+
+/// A covariance travels as its upper triangle, row by row: xx xy xz yy yz zz.
+std::vector<float> FromCovariance(const Eigen::Matrix3d& S);
+/// `upper` has six values.
+Eigen::Matrix3d ToCovariance(const std::vector<float>& upper);
 
 inline Se3 ToSe3(const double position[3], const double orientation[4]) {
   return {Eigen::Quaterniond(orientation[0], orientation[1], orientation[2], orientation[3])

@@ -17,6 +17,21 @@ Header HeaderOf(const Message& message) {
   return {message.utime, message.seq, message.session};
 }
 
+template <class Message>
+void SetHeader(const Header& header, Message* message) {
+  message->utime = header.utime;
+  message->seq = header.seq;
+  message->session = header.session;
+}
+
+/// A message with this header; everything else is zero.
+template <class Message>
+Message MessageOf(const Header& header) {
+  Message message{};
+  SetHeader(header, &message);
+  return message;
+}
+
 /// First of the running numbers (of landmarks or people) that a process assigns if it receives a
 /// session from image `first_seq` on and assigns fewer than `most_per_frame` of them per frame; 1
 /// at the start of a session. A process that was killed and restarted thus never reuses a number of

@@ -1,10 +1,10 @@
 #include "processes/tools/doctor/doctor_bus.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 #include <vector>
 
+#include "common/util/format.h"
 #include "processes/node/live/lcm_transport.h"
 #include "processes/node/live/process_usage.h"
 #include "processes/node/message/channels.h"
@@ -26,11 +26,7 @@ struct Stamp {
   std::int64_t utime = 0;
 };
 
-std::string Fixed(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.1f", value);
-  return text;
-}
+std::string Fixed(double value) { return Format("%.1f", value); }
 
 std::string NameOf(const process_status_t& status) {
   return status.process + " (" + std::to_string(status.pid) + ")";

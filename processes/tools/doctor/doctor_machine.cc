@@ -2,10 +2,11 @@
 
 #include <unistd.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <system_error>
+
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -82,10 +83,9 @@ Diagnoses JudgeDisk(const std::string& folder) {
   const double free_mb = 1e-6 * static_cast<double>(space.available);
   const double log_min = free_mb / (kLogMbPerFrame * kRate_hz * 60);
   const double map_min = free_mb / (kMapMbPerFrame * kRate_hz * 60);
-  char text[160];
-  std::snprintf(text, sizeof(text),
-                "%.0f MB free: the map of %.0f min, or a log of everything of %.0f min, at 30 Hz",
-                free_mb, map_min, log_min);
+  const std::string text =
+      Format("%.0f MB free: the map of %.0f min, or a log of everything of %.0f min, at 30 Hz",
+             free_mb, map_min, log_min);
   const Health health = map_min < kMinMap_min   ? Health::kFail
                         : log_min < kMinLog_min ? Health::kWarn
                                                 : Health::kOk;

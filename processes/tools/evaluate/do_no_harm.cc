@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "common/evaluation/statistics.h"
 #include "common/simulation/settings.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -93,12 +93,10 @@ std::string DoNoHarmTitle() {
 std::string ToLine(const DoNoHarmSetting& setting) {
   const Statistics ate = Ratios(setting, &DoNoHarmRun::AteRatio);
   const Statistics rpe = Ratios(setting, &DoNoHarmRun::RpeRatio);
-  std::array<char, 160> line;
-  std::snprintf(line.data(), line.size(), "%-14s %9.2f %6.2f %12.3f %8.3f %8.3f %8.3f %7.0f %%\n",
-                setting.setting.c_str(), 100 * MedianAte(setting, &DoNoHarmRun::without_people),
+  return Format("%-14s %9.2f %6.2f %12.3f %8.3f %8.3f %8.3f %7.0f %%\n", setting.setting.c_str(),
+                100 * MedianAte(setting, &DoNoHarmRun::without_people),
                 100 * MedianAte(setting, &DoNoHarmRun::decided), ate.median, ate.max, rpe.median,
                 rpe.max, 100 * TrustedShare(setting));
-  return line.data();
 }
 
 nlohmann::json ToJson(const DoNoHarmSetting& setting) {

@@ -16,6 +16,7 @@
 #include "common/util/error.h"
 #include "common/util/json_file.h"
 #include "common/util/output_files.h"
+#include "common/util/quantile.h"
 #include "processes/node/bus/fifo_bus.h"
 #include "processes/node/bus/parallel_bus.h"
 #include "processes/node/message/channels.h"
@@ -146,14 +147,11 @@ struct Statistics {
   double p99 = 0;
 };
 
-Statistics StatisticsOf(std::vector<double> values) {
+Statistics StatisticsOf(const std::vector<double>& values) {
   if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
   double sum = 0;
   for (const double value : values) sum += value;
-  const auto last = static_cast<double>(values.size() - 1);
-  const auto quantile = [&](double q) { return values[static_cast<std::size_t>(q * last + 0.5)]; };
-  return {sum / static_cast<double>(values.size()), quantile(0.50), quantile(0.99)};
+  return {sum / static_cast<double>(values.size()), Quantile(values, 0.50), Quantile(values, 0.99)};
 }
 
 double PeakMemoryMb() {

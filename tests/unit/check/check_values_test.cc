@@ -15,6 +15,7 @@
 #include "common/check/check_jpeg.h"
 #include "common/check/check_stereo.h"
 #include "common/check/check_times.h"
+#include "tests/support/input_errors.h"
 #include "tests/support/scratch_folder.h"
 
 namespace airdos {
@@ -35,10 +36,6 @@ Finding FirstOf(const FindingList& list, const std::string& kind) {
   return {};
 }
 
-bool Holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 TEST(FindingListValuesTest, CountsEachOnceAndKeepsThreeOfAKind) {
   FindingList list;
   for (int i = 0; i < 2; ++i) list.Warn("a", "x", "the same");
@@ -57,14 +54,6 @@ TEST(FindingListValuesTest, CountsEachOnceAndKeepsThreeOfAKind) {
   list.FailFrom("c", "file:7: why: so");
   EXPECT_EQ(FirstOf(list, "c").where, "file:7");
   EXPECT_EQ(FirstOf(list, "c").what, "why: so");
-}
-
-TEST(QuantileValuesTest, IsTheFirstThatSoManyDoNotExceed) {
-  EXPECT_EQ(Quantile({40, 10, 30, 20}, 0.5), 20);
-  EXPECT_EQ(Quantile({40, 10, 30, 20}, 0.51), 30);
-  EXPECT_EQ(Quantile({40, 10, 30, 20}, 0), 10);
-  EXPECT_EQ(Quantile({40, 10, 30, 20}, 1), 40);
-  EXPECT_EQ(Quantile({}, 0.5), 0);
 }
 
 FindingList Timed(const std::vector<std::int64_t>& utimes) {

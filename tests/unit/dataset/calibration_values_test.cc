@@ -14,26 +14,11 @@
 #include "common/dataset/sequence_files.h"
 #include "common/dataset/shibuya_sequence.h"
 #include "common/dataset/stereo_sequence.h"
-#include "common/util/error.h"
+#include "tests/support/input_errors.h"
 #include "tests/support/scratch_folder.h"
 
 namespace airdos {
 namespace {
-
-/// The text of the InputError that `act` throws; empty where it throws none.
-template <class Act>
-std::string ErrorOf(Act act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool Holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 class CalibrationValuesTest : public ::testing::Test {
  protected:

@@ -6,27 +6,17 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/dataset/sequence_files.h"
 #include "common/dataset/shibuya_sequence.h"
 #include "common/dataset/stereo_sequence.h"
-#include "common/util/error.h"
+#include "tests/support/input_errors.h"
 
 namespace airdos {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string MessageOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 /// A folder that lives as long as one test.
 class DatasetTest : public ::testing::Test {
@@ -59,7 +49,7 @@ class DatasetTest : public ::testing::Test {
     }
   }
   std::string OpenMessage() const {
-    return MessageOf([&] { OpenStereoSequence(folder_.string()); });
+    return ErrorOf([&] { OpenStereoSequence(folder_.string()); });
   }
 
   fs::path folder_;
@@ -165,12 +155,12 @@ TEST_F(DatasetTest, LendsThePublicCalibrationOnlyWhereItIsAskedFor) {
   const auto sequence = OpenStereoSequence(folder_.string(), {kPublicCalibration});
   EXPECT_EQ(sequence->camera().fx_px, 772.5483399593904);
   EXPECT_EQ(sequence->camera().baseline_m, 0.25);
-  EXPECT_NE(MessageOf([&] {
+  EXPECT_NE(ErrorOf([&] {
               OpenStereoSequence(folder_.string(), {"zed"});
             }).find("calibration 'zed': is unknown"),
             std::string::npos);
   WriteImages("image_0", "image_1", 1, 320, 240);
-  EXPECT_NE(MessageOf([&] {
+  EXPECT_NE(ErrorOf([&] {
               OpenStereoSequence(folder_.string(), {kPublicCalibration});
             }).find("is not that of the public data set"),
             std::string::npos);
@@ -182,9 +172,9 @@ TEST_F(DatasetTest, NamesFileAndLineOfBadKeypoints) {
   Write("alphapose_0/000000.txt", PersonRow(1) + "1 2 3\n");
   const auto sequence = OpenStereoSequence(folder_.string());
   const std::string where = Path("alphapose_0/000000.txt") + ":2: ";
-  EXPECT_EQ(MessageOf([&] { sequence->Load(0); }).find(where + "holds 3 numbers"), 0u);
+  EXPECT_EQ(ErrorOf([&] { sequence->Load(0); }).find(where + "holds 3 numbers"), 0u);
   Write("alphapose_0/000000.txt", PersonRow(1) + "1 nan 3\n");
-  EXPECT_EQ(MessageOf([&] { sequence->Load(0); }), where + "'nan' is not a finite number");
+  EXPECT_EQ(ErrorOf([&] { sequence->Load(0); }), where + "'nan' is not a finite number");
 }
 
 TEST_F(DatasetTest, NamesWhatIsWrongWithTheFolder) {
@@ -222,7 +212,7 @@ TEST_F(DatasetTest, SaysThatAnImageIsNone) {
   WriteCalibration();
   Write("image_1/000001.jpg", "no image");
   const auto sequence = OpenStereoSequence(folder_.string());
-  EXPECT_EQ(MessageOf([&] { sequence->Load(1); }),
+  EXPECT_EQ(ErrorOf([&] { sequence->Load(1); }),
             Path("image_1/000001.jpg") + ": is neither a JPEG nor a PNG file");
 }
 
@@ -313,7 +303,7 @@ class KittiTrackingTest : public DatasetTest {
   }
   std::string Sequence() const { return Path("training/image_02/0013"); }
   std::string Message() const {
-    return MessageOf([&] { OpenStereoSequence(Sequence()); });
+    return ErrorOf([&] { OpenStereoSequence(Sequence()); });
   }
 };
 

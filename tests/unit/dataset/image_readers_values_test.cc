@@ -10,24 +10,11 @@
 #include "common/dataset/sequence_files.h"
 #include "common/dataset/times_file.h"
 #include "common/util/error.h"
+#include "tests/support/input_errors.h"
 #include "tests/support/scratch_folder.h"
 
 namespace airdos {
 namespace {
-
-template <class Act>
-std::string ErrorOf(Act act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool Holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 using Numbers = std::vector<std::uint64_t>;
 

@@ -9,25 +9,12 @@
 #include "common/human/body_keypoints.h"
 #include "common/util/error.h"
 #include "common/util/image_header.h"
+#include "tests/support/input_errors.h"
 #include "tests/support/palette_png.h"
 #include "tests/support/scratch_folder.h"
 
 namespace airdos {
 namespace {
-
-template <class Act>
-std::string ErrorOf(Act act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool Holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 /// Joint j at (j + 0.5, 100 + j) with confidence 0.01 j, but for the first two.
 std::string Row(int num_joints) {

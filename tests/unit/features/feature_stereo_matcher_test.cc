@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "common/features/feature_extractor.h"
+#include "common/util/quantile.h"
 #include "tests/support/rendered_scene.h"
 
 namespace airdos {
@@ -51,11 +51,6 @@ cv::Mat Right(double disparity_px, double row_offset_px = 0) {
   return NoisePicture(320, 192, 9, disparity_px, row_offset_px);
 }
 
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 TEST(FeatureStereoMatcher, FindsTheDisparityToAFractionOfAPixel) {
   for (const double disparity_px : {1.4, 7.3, 26.55}) {
     const Rig rig(Left(), Right(disparity_px), {});
@@ -67,7 +62,7 @@ TEST(FeatureStereoMatcher, FindsTheDisparityToAFractionOfAPixel) {
       num_wrong += errors_px.back() > 1 ? 1 : 0;
     }
     EXPECT_GT(disparities_px.size(), rig.left_features.size() / 2);
-    EXPECT_LT(Median(errors_px), 0.1);
+    EXPECT_LT(Quantile(errors_px, 0.5), 0.1);
     EXPECT_LT(num_wrong, static_cast<int>(disparities_px.size()) / 50);
   }
 }
@@ -86,7 +81,7 @@ TEST(FeatureStereoMatcher, FindsTheDepthsOfARenderedScene) {
         std::abs(feature.uv_px.x() - *u_right_px - camera.fx_px * camera.baseline_m / depth_m));
   }
   EXPECT_GT(errors_px.size(), 150u);
-  EXPECT_LT(Median(errors_px), 0.1);
+  EXPECT_LT(Quantile(errors_px, 0.5), 0.1);
 }
 
 TEST(FeatureStereoMatcher, NothingNearerThanTheMinimalDepth) {
@@ -133,7 +128,7 @@ TEST(FeatureStereoMatcher, RefinesAGuessAtEachLevel) {
         errors_px.push_back(std::abs(feature.uv_px.x() - *u_right_px - kDisparity_px));
     }
     ASSERT_GT(errors_px.size(), 100u);
-    EXPECT_LT(Median(errors_px), 0.1) << "level " << level;
+    EXPECT_LT(Quantile(errors_px, 0.5), 0.1) << "level " << level;
   }
 }
 

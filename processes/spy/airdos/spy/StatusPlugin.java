@@ -5,9 +5,7 @@ import java.awt.BorderLayout;
 import java.awt.Color;
 import java.awt.Component;
 import java.awt.Dimension;
-import java.awt.event.ActionEvent;
 import java.io.IOException;
-import javax.swing.AbstractAction;
 import javax.swing.Action;
 import javax.swing.JDesktopPane;
 import javax.swing.JInternalFrame;
@@ -43,12 +41,7 @@ public final class StatusPlugin implements SpyPlugin {
   /** First called with nulls, only for the name. */
   @Override
   public Action getAction(JDesktopPane desktop, ChannelData channel) {
-    return new AbstractAction(NAME) {
-      @Override
-      public void actionPerformed(ActionEvent event) {
-        if (desktop != null) open(desktop, channel);
-      }
-    };
+    return PluginWindow.action(NAME, desktop, () -> open(desktop, channel));
   }
 
   private static void open(JDesktopPane desktop, ChannelData channel) {
@@ -68,14 +61,14 @@ public final class StatusPlugin implements SpyPlugin {
 
     JPanel panel = new JPanel(new BorderLayout());
     panel.add(new JScrollPane(newTable(model)));
-    JInternalFrame window = CameraPlugin.newWindow(NAME, panel, desktop, SIZE);
+    JInternalFrame window = PluginWindow.open(NAME, panel, desktop, SIZE);
     Timer timer = new Timer(REFRESH_MS, event -> model.refresh(nowMs()));
     Runnable stop =
         () -> {
           timer.stop();
           lcm.unsubscribe(name, subscriber);
         };
-    CameraPlugin.onClose(window, desktop, stop);
+    PluginWindow.onClose(window, desktop, stop);
     timer.start();
   }
 
