@@ -96,8 +96,6 @@ void FrontendNode::ApplyUpdates() {
   }
 }
 
-}
-
 cv::Mat FrontendNode::Mask(const FrontendInputs& inputs) {
   cv::Mat mask;
   if (inputs.mask && inputs.mask->encoding != person_mask_t::ENCODING_NONE) {

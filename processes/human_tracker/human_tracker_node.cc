@@ -82,6 +82,8 @@ void HumanTrackerNode::ProcessFrame(const Header& header, HumanTrackerInputs inp
   Publish(channel::kHumanObservations, ToHumanObservations(header, frame, tracked));
 }
 
+std::unique_ptr<Node> MakeHumanTrackerNode(ConfigReader* config) {
+  return std::make_unique<HumanTrackerNode>(ReadHumanTrackerOptions(config));
 }
 
 }  // namespace airdos
