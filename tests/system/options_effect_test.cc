@@ -231,6 +231,8 @@ struct Covered {
 };
 const Covered kCovered[] = {
     {"optimizer:window.forget_after_frames", "estimator/window_test.cc", "MemoryIsBounded"},
+    {"frontend:motion.angular_ceiling_rad_s2", "unit/features/camera_motion_filter_test.cc",
+     "TheLearntAccelerationStaysWithinItsBounds"},
     {"map_recorder:output.directory", "node/map_recorder_values_test.cc",
      "EachKeyOfTheConfigurationIsInForce"},
     {"map_recorder:output.chunk_frames", "node/map_recorder_values_test.cc",
