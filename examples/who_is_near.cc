@@ -9,11 +9,13 @@
 #include <airdos/state_estimate_t.hpp>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 

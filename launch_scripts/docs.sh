@@ -37,7 +37,7 @@ fi
 readonly PAGES=$AIRDOS_ROOT/build/pages SETTINGS=$AIRDOS_ROOT/build/site-settings
 rm -rf "$PAGES" "$SETTINGS" build/site
 mkdir -p "$PAGES" "$SETTINGS" build/site
-pages=(*.md docs/*.md lcmtypes/README.md logs/README.md tests/mutation/README.md)
+pages=(*.md docs/*.md examples/README.md lcmtypes/README.md logs/README.md tests/mutation/README.md)
 cp -p --parents "${pages[@]}" LICENSE "$PAGES"
 cp -rp --parents docs/images "$PAGES"
 for page in "${pages[@]}"; do

@@ -41,7 +41,8 @@ man_page() {
   done < <(sed -n '/^Subcommands:/,$s/^  \([a-z][a-z-]*\) .*/\1/p' "$help")
   help2man --no-info --section=1 --manual='AirDOS' --source="AirDOS ${version%-*}" --name="$(description_of "$help")" \
     "${include[@]}" --output="$work/page" "$runtime/bin/$command"
-  # Where the programs stand now is not where they are installed.
+  # Where the programs stand now is not where they are installed. help2man escapes dots, dashes and backslashes.
+  # shellcheck disable=SC2001 # the shell's own substitution cannot repeat what it found
   sed "s|$(sed 's/[.\-]/\\\\*&/g' <<< "$stage/runtime")||g" "$work/page" | gzip -9n > "$runtime/share/man/man1/$command.1.gz"
 }
 

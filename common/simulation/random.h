@@ -9,8 +9,8 @@
 namespace airdos {
 
 /// Seeded random numbers that are the same with every standard library: the standard specifies the
-/// engine exactly, but not its distributions. Never make two draws in one expression: the compiler would
-/// choose which one comes first.
+/// engine exactly, but not its distributions. Never make two draws in one expression: the compiler
+/// would choose which one comes first.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}

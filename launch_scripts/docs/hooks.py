@@ -30,7 +30,7 @@ def on_config(config):
     config["nav"] = [{"Start": "README.md"}, {"Overview": "docs/README.md"}]
     config["nav"] += [{title: f"docs/{target}"} for title, target in listed]
     reference = [{"Channels and types": "lcmtypes/README.md"}, {"Sample log": "logs/README.md"}]
-    reference += [{"Mutation tests": "tests/mutation/README.md"}]
+    reference += [{"Examples": "examples/README.md"}, {"Mutation tests": "tests/mutation/README.md"}]
     if config["extra"].get("api"):
         reference.append({"API of the libraries": API})
     config["nav"] += [{"Reference": reference}]

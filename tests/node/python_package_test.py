@@ -163,7 +163,7 @@ class CodecTest(unittest.TestCase):
 
     def test_comments_of_the_types_are_help(self):
         self.assertIn("utime: int64_t: us, capture time", airdos.image_t.__doc__)
-        self.assertIn("than that of a frame before", (pathlib.Path(airdos.__file__).parent / "static_features_t.py").read_text())
+        self.assertIn("than that of an earlier frame", (pathlib.Path(airdos.__file__).parent / "static_features_t.py").read_text())
 
     def test_channels_are_those_of_cpp(self):
         text = (SOURCE / "processes/node/message/channels.h").read_text()

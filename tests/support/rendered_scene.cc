@@ -52,8 +52,8 @@ cv::Mat NoisePicture(int width, int height, std::uint32_t seed, double shift_u_p
 RenderedScene::RenderedScene(std::uint32_t seed) : seed_(seed) {
   boxes_.push_back({{-6, -2.4, -8}, {6, 1.6, 12}});
   std::mt19937 random(seed);
-  // Computed from raw numbers: std::uniform_real_distribution differs between standard libraries. One
-  // draw per statement, as the evaluation order of arguments differs between compilers.
+  // Computed from raw numbers: std::uniform_real_distribution differs between standard libraries.
+  // One draw per statement, as the evaluation order of arguments differs between compilers.
   const auto uniform = [&random](double low, double high) {
     return low + (high - low) * static_cast<double>(random()) / 4294967295.0;
   };

@@ -38,7 +38,8 @@ class CommandLineTest : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   static std::vector<std::string> Programs() {
-    const std::set<std::string> only_for_tests = {"airdos-echo", "airdos-lossy-link"};
+    const std::set<std::string> only_for_tests = {"airdos-echo", "airdos-lossy-link",
+                                                  "airdos-message-judge"};
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(fs::path(AIRDOS_BINARY_DIR) / "bin")) {
       const std::string name = entry.path().filename().string();

@@ -16,9 +16,9 @@ readonly root=$work/root
 readonly docs=$root/launch_scripts/docs.sh site=$root/build/site
 
 make_root() {
-  mkdir -p "$root"/{lcmtypes,logs,tests/mutation,common}
+  mkdir -p "$root"/{examples,lcmtypes,logs,tests/mutation,common}
   cp -r "$source_dir"/{docs,*.md,LICENSE} "$root"
-  (cd "$source_dir" && cp --parents {lcmtypes,logs,tests/mutation}/README.md "$root")
+  (cd "$source_dir" && cp --parents {examples,lcmtypes,logs,tests/mutation}/README.md "$root")
   mkdir "$root/launch_scripts"
   cp -r "$scripts"/{docs,docs.sh,setup.sh,common.sh} "$root/launch_scripts/"
   # Those of the reference are not asked for here.
@@ -39,7 +39,7 @@ make_small_root() {
   rm -rf "$root"/*.md "$root"/docs/*
   mkdir "$root/docs/images"
   printf '# Start\n' | tee "$root/README.md" "$root/CONTRIBUTING.md" "$root/CHANGELOG.md" "$root/THIRD_PARTY_LICENSES.md" \
-    "$root/lcmtypes/README.md" "$root/logs/README.md" "$root/tests/mutation/README.md" > /dev/null
+    "$root/examples/README.md" "$root/lcmtypes/README.md" "$root/logs/README.md" "$root/tests/mutation/README.md" > /dev/null
   printf '# Pages\n\n1. [One](one.md): the first\n' > "$root/docs/README.md"
   printf 'int a;\n' > "$root/common/a.h"
 }

@@ -178,6 +178,7 @@ nothing_is_left() {
     esac
   done < <(find "$work/top/upper" -mindepth 1 -printf '/%P\n')
   [[ -z $rest ]] || fail "dpkg -r leaves$rest"
+  # shellcheck disable=SC2016 # dpkg's variable
   ! in_root dpkg-query -W -f '${db:Status-Status}\n' 'airdos*' 2> /dev/null | grep -x installed || fail "dpkg knows them still"
 }
 
