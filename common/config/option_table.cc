@@ -1,5 +1,6 @@
 #include "common/config/option_table.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -147,11 +148,10 @@ void OptionTable::Add(const std::string& key, std::vector<int>* member, const Ra
 }
 
 const Option& OptionTable::Find(const std::string& key) const {
-  for (const Option& option : options_) {
-    if (option.key == key) return option;
-  }
-  AIRDOS_CHECK(!"there is no such option");
-  return options_.front();
+  const auto found = std::find_if(options_.begin(), options_.end(),
+                                  [&](const Option& option) { return option.key == key; });
+  AIRDOS_CHECK(found != options_.end());
+  return *found;
 }
 
 void OptionTable::RequireNotBelow(const std::string& key, const std::string& other) {

@@ -14,6 +14,7 @@
 // "cannot" if it decodes but cannot be encoded (a text with a zero in it). "TYPE" alone asks for a
 // sample.
 
+namespace airdos {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -35,12 +36,12 @@ Bytes FromHex(const std::string& text) {
 
 template <class Message>
 std::string Judge(const std::string& hex) {
-  if (hex.empty()) return ToHex(airdos::Encode(airdos::Sample<Message>()));
+  if (hex.empty()) return ToHex(Encode(Sample<Message>()));
   const Bytes bytes = FromHex(hex);
   Message message = {};
-  if (!airdos::Decode(bytes.data(), bytes.size(), &message)) return "no";
+  if (!Decode(bytes.data(), bytes.size(), &message)) return "no";
   try {
-    return ToHex(airdos::Encode(message));
+    return ToHex(Encode(message));
   } catch (const std::length_error&) {
     return "cannot";
   }
@@ -54,18 +55,22 @@ std::string JudgeAs(const std::string& type, const std::string& hex) {
   return "";
 }
 
+/// The same for all types of channels.
+std::string JudgeAll(const std::string& type, const std::string& hex) {
+  return JudgeAs<image_t, stereo_calibration_t, person_keypoints_t, person_mask_t,
+                 static_features_t, human_observations_t, state_estimate_t, map_update_t, pose_t,
+                 frame_done_t, process_status_t>(type, hex);
+}
+
 }  // namespace
+}  // namespace airdos
 
 int main() {
   for (std::string line; std::getline(std::cin, line);) {
     std::istringstream words(line);
     std::string type, hex;
     words >> type >> hex;
-    using namespace airdos;
-    std::cout << JudgeAs<image_t, stereo_calibration_t, person_keypoints_t, person_mask_t,
-                         static_features_t, human_observations_t, state_estimate_t, map_update_t,
-                         pose_t, frame_done_t, process_status_t>(type, hex)
-              << std::endl;
+    std::cout << airdos::JudgeAll(type, hex) << std::endl;
   }
   return 0;
 }

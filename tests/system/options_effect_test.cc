@@ -271,9 +271,9 @@ TEST(OptionsEffectTest, EachOptionChangesSomethingOrHasItsTest) {
   for (const auto& [option, value] : options) {
     if (covered.erase(option) > 0) continue;
     const std::size_t colon = option.find(':');
-    const auto process =
-        std::find_if(std::begin(kProcesses), std::end(kProcesses),
-                     [&](const Process& other) { return other.name == option.substr(0, colon); });
+    const std::string name = option.substr(0, colon);
+    const auto process = std::find_if(std::begin(kProcesses), std::end(kProcesses),
+                                      [&](const Process& other) { return other.name == name; });
     ASSERT_NE(process, std::end(kProcesses)) << option << ": of no process that is run here";
     EXPECT_NE(WhereItShows(*process, option.substr(colon + 1), value), "")
         << option << " changes nothing: give it a scene, or a test and a line in the list";
