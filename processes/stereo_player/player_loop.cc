@@ -12,6 +12,7 @@
 #include "processes/node/live/process_usage.h"
 #include "processes/node/log/event_log.h"
 #include "processes/node/log/looped_source.h"
+#include "processes/node/log/partial_source.h"
 #include "processes/node/message/channels.h"
 #include "processes/stereo_player/dataset_source.h"
 
@@ -50,6 +51,12 @@ LcmTransport::Handler HandlerOf(Handle handle) {
 }  // namespace
 
 std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std::int64_t session) {
+  if (!options.without.empty()) {
+    PlayerOptions whole = options;
+    whole.without.clear();
+    return std::make_unique<PartialSource>(OpenPlayerSource(whole, session),
+                                           ChannelsOfPeople("--without", options.without));
+  }
   if (options.is_one_session) {
     PlayerOptions once = options;
     once.is_one_session = false;

@@ -3,6 +3,7 @@
 #include "common/config/option_pages.h"
 #include "common/util/error.h"
 #include "common/util/words.h"
+#include "processes/node/log/partial_source.h"
 
 namespace airdos {
 
@@ -54,6 +55,9 @@ PlayerArguments::PlayerArguments(CLI::App* app) : input_(app) {
                   "auto: files that fit unchanged, else JPEG; png: lossless, whatever the size")
       ->capture_default_str()
       ->check(OneOf({"auto", "jpeg", "png"}));
+  app->add_option("--without", without_,
+                  "keypoints, masks or both, separated by commas: leave these channels to "
+                  "airdos-person-detector");
   AddFile("--write-log", &options_.write_log,
           "Write an LCM log of exactly these messages instead of publishing them", app);
 }
@@ -73,6 +77,8 @@ PlayerOptions PlayerArguments::Resolve() const {
   ConfigReader config = ReadConfig(common_);
   TableOf(&options).Read(&config);
   FinishConfig(config, common_);
+  options.without = SplitAtCommas(without_);
+  ChannelsOfPeople("--without", options.without);  // or one of them is none
   if (wait_for_) options.gate.wait_for = SplitAtCommas(*wait_for_ == "none" ? "" : *wait_for_);
   if (frames_in_flight_) options.gate.frames_in_flight = *frames_in_flight_;
   return options;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/config/option_table.h"
 #include "processes/node/check/input_check.h"
@@ -26,8 +27,9 @@ struct PlayerOptions {
   bool is_one_session = false;          ///< or not: capture times and image numbers go on
   std::int64_t say_every = 0;           ///< frames; 0: never
   PlayerPace pace = PlayerPace::kLockstep;
-  double rate = 1;        ///< realtime: capture time that passes in a second
-  std::string write_log;  ///< file to write instead of publishing
+  double rate = 1;                   ///< realtime: capture time that passes in a second
+  std::vector<std::string> without;  ///< "keypoints", "masks": a detector publishes these
+  std::string write_log;             ///< file to write instead of publishing
   LockstepGateOptions gate{{"airdos-optimizer", "airdos-map-recorder"}};
   ImagePackerOptions image;
   InputCheckOptions check;
@@ -51,6 +53,7 @@ class PlayerArguments {
   std::string pace_ = "lockstep";
   std::string encoding_ = "auto";
   std::optional<std::string> wait_for_;
+  std::string without_;
   std::optional<int> frames_in_flight_;
 };
 

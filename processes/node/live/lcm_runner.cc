@@ -22,6 +22,10 @@ namespace {
 /// whoever is further down the chain gives up later: else one silent camera would cost two
 /// processes their frame.
 double NumDeadlines(const std::string& channel) {
+  const bool is_of_people = channel == channel::kPersonKeypointsLeft ||
+                            channel == channel::kPersonKeypointsRight ||
+                            channel == channel::kPersonMask;
+  if (is_of_people) return 1.125;  // of the person detector, if there is one
   if (IsInputChannel(channel)) return 1;
   if (channel == channel::kHumanObservations) return 1.25;
   if (channel == channel::kStaticFeatures) return 1.5;

@@ -74,8 +74,8 @@ void AddCommonOptions(const OptionPages& pages, CLI::App* app, CommonArguments* 
 }
 
 const std::vector<std::string>& ConfigNames() {
-  static const std::vector<std::string> names{"frontend", "human_tracker", "optimizer",
-                                              "map_recorder", "stereo_player"};
+  static const std::vector<std::string> names{"frontend",     "human_tracker",   "optimizer",
+                                              "map_recorder", "person_detector", "stereo_player"};
   return names;
 }
 
@@ -94,7 +94,7 @@ Assignment ParseAssignment(const std::string& text) {
     const std::string hint = DidYouMean(process, all);
     throw InputError("--set '" + text + "': there is no process '" + process + "'" +
                      (hint.empty() ? "; there are frontend, human_tracker, optimizer, "
-                                     "map_recorder, stereo_player"
+                                     "map_recorder, person_detector, stereo_player"
                                    : hint));
   }
   return {process, text.substr(colon + 1)};

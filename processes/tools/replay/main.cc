@@ -6,11 +6,13 @@
 #include <opencv2/core/utility.hpp>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "processes/node/check/input_check.h"
 #include "processes/node/live/process_cli.h"
 #include "processes/node/log/looped_source.h"
+#include "processes/node/log/partial_source.h"
 #include "processes/tools/progress/progress_bar.h"
 #include "processes/tools/replay/replay.h"
 #include "processes/tools/replay/replay_setup.h"
@@ -59,6 +61,11 @@ int main(int argc, char** argv) {
   app.add_flag("--from-features", setup.from_features,
                "run only the optimizer and the map recorder, on the features and people that the "
                "log holds (airdos-simulate)");
+  app.add_flag(
+         "--detect", setup.detects,
+         "run the person detector as well; keypoints and masks of the log or data set are not "
+         "used")
+      ->excludes("--from-features");
   app.add_option("--threads", threads,
                  "1: all in one; auto: one per process, if there are enough cores")
       ->check(airdos::OneOf({"1", "auto"}))
@@ -81,7 +88,10 @@ int main(int argc, char** argv) {
       std::cerr << "airdos-replay: " << line << std::endl;
     };
     const auto open = [&] {
-      return airdos::OpenFrameSource(input.path(), first, last, inputs, check.calibration);
+      auto whole = airdos::OpenFrameSource(input.path(), first, last, inputs, check.calibration);
+      if (!setup.detects) return whole;
+      return std::unique_ptr<airdos::FrameSource>(std::make_unique<airdos::PartialSource>(
+          std::move(whole), airdos::ChannelsOfPeople("--detect", {"keypoints", "masks"})));
     };
     airdos::LoopedSource source(open, num_loops);
     // Reported only once everything else is known to be right.

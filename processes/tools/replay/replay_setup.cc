@@ -20,6 +20,7 @@
 #include "processes/node/live/process_cli.h"
 #include "processes/node/message/channels.h"
 #include "processes/optimizer/optimizer_node.h"
+#include "processes/person_detector/person_detector_node.h"
 #include "processes/stereo_player/dataset_source.h"
 
 namespace airdos {
@@ -29,6 +30,8 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kSession = 1;  // of data sets; always the same, so that runs are comparable
 
+constexpr char kDetector[] = "person_detector";
+
 struct Process {
   std::string name;  // in its configuration file and in overrides
   RenamedKeys renamed;
@@ -37,8 +40,12 @@ struct Process {
   std::vector<std::string> publishes;
 };
 
-const std::vector<Process>& Processes() {
+const std::vector<Process>& AllProcesses() {
   static const std::vector<Process> processes{
+      {kDetector,
+       PagesOf<PersonDetectorOptions>().renamed,
+       MakePersonDetectorNode,
+       {channel::kPersonKeypointsLeft, channel::kPersonKeypointsRight, channel::kPersonMask}},
       {"frontend",
        PagesOf<FrontendOptions>().renamed,
        MakeFrontendNode,
@@ -55,6 +62,13 @@ const std::vector<Process>& Processes() {
   return processes;
 }
 
+/// Those that run.
+std::vector<Process> Processes(const ReplaySetup& setup) {
+  std::vector<Process> processes = AllProcesses();
+  if (!setup.detects) processes.erase(processes.begin());
+  return processes;
+}
+
 using Configs = std::map<std::string, ConfigReader>;                  // by process
 using Assignments = std::map<std::string, std::vector<std::string>>;  // by process, in order
 
@@ -66,7 +80,7 @@ std::string ConfigPath(const ReplaySetup& setup, const std::string& process) {
 
 Configs ReadConfigs(const ReplaySetup& setup) {
   Configs configs;
-  for (const Process& process : Processes()) {
+  for (const Process& process : Processes(setup)) {
     configs.emplace(process.name,
                     ConfigReader::FromFile(ConfigPath(setup, process.name), process.renamed));
   }
@@ -163,14 +177,15 @@ void SetConfig(const std::string& path, ReplaySetup* setup) {
   }
   RequireRegularFile(path);
   std::vector<std::string> names;
-  for (const Process& process : Processes()) names.push_back(process.name);
+  for (const Process& process : AllProcesses()) names.push_back(process.name);
   const std::string stem = fs::path(path).stem().string();
   if (std::find(names.begin(), names.end(), stem) == names.end()) {
     const std::string hint = DidYouMean(stem, names);
-    throw InputError("--config " + path +
-                     ": the name does not tell which process it belongs to: frontend.yaml, "
-                     "human_tracker.yaml, optimizer.yaml or map_recorder.yaml" +
-                     hint);
+    throw InputError(
+        "--config " + path +
+        ": the name does not tell which process it belongs to: frontend.yaml, "
+        "human_tracker.yaml, optimizer.yaml, map_recorder.yaml or person_detector.yaml" +
+        hint);
   }
   setup->config_file = path;
 }
@@ -181,8 +196,8 @@ ReplayNodes PrepareReplay(const ReplaySetup& setup) {
     for (const std::string& assignment : assignments) configs.at(process).Override(assignment);
   }
   ReplayNodes result;
-  for (const Process& process : Processes()) {
-    const bool makes_features = process.name == "frontend" || process.name == "human_tracker";
+  for (const Process& process : Processes(setup)) {
+    const bool makes_features = process.name != "optimizer";
     if (process.make_node == nullptr || (setup.from_features && makes_features)) continue;
     ConfigReader& config = configs.at(process.name);
     result.nodes.push_back({process.make_node(&config), process.publishes});
@@ -191,7 +206,7 @@ ReplayNodes PrepareReplay(const ReplaySetup& setup) {
   MapRecorderOptions recording = ReadMapRecorderOptions(&configs.at("map_recorder"));
   configs.at("map_recorder").Finish();
   recording.rules = setup.rules;
-  for (const Process& process : Processes()) {
+  for (const Process& process : Processes(setup)) {
     recording.rules.inputs.push_back(ConfigPath(setup, process.name));
   }
   if (recording.directory.empty()) {
@@ -207,7 +222,7 @@ ReplayNodes PrepareReplay(const ReplaySetup& setup) {
   }
   result.outputs = std::make_unique<OutputFiles>(outside, recording.rules);
   std::vector<std::string> configurations;
-  for (const Process& process : Processes()) {
+  for (const Process& process : Processes(setup)) {
     const bool is_run =
         process.make_node == nullptr || !setup.from_features || process.name == "optimizer";
     if (is_run && !setup.run_dir.empty()) configurations.push_back(process.name);

@@ -24,6 +24,7 @@ struct ReplaySetup {
   /// Overrides, applied last: "process:section.key=value", or without process if only one has
   /// the key.
   std::vector<std::string> overrides;
+  bool detects = false;        ///< the person detector runs, too; the source must not speak for it
   bool from_features = false;  ///< only optimizer and map recorder, on a log of features
   /// What is read besides the configurations, and what may be replaced.
   OutputRules rules;
