@@ -8,6 +8,7 @@
 #   --speed X             with --log: 1 as recorded, 2 twice as fast, 0 as fast as possible (default 1)
 #   --pace lockstep|realtime
 #                         lockstep: nothing is lost; realtime: the newest image counts (default lockstep)
+#   --detect              also start airdos-person-detector; keypoints and masks of the data set or log are not used
 #   --lcm-url URL         (default udpm://239.255.76.67:7667?ttl=0)
 #   --run-dir FOLDER      folder for logs and results (default logs/runs/<time>); logs/runs/latest points to it
 #   --force               replace files in that folder that were not written by a run
@@ -23,14 +24,14 @@ set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
 source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
-readonly PROCESSES=(frontend human-tracker optimizer map-recorder)
+PROCESSES=(frontend human-tracker optimizer map-recorder)
 readonly READY_DEADLINE_S=30
 readonly STOP_DEADLINE_S=20
 # A frame that lacks an input is completed after 5 s (--deadline-s), so a shorter silence does not mean the end.
 readonly IDLE_S=6
 readonly DRAIN_DEADLINE_S=600
 
-data='' loop=1 log='' speed=1 pace=lockstep url=$AIRDOS_DEFAULT_URL run_dir='' host_network=no is_inside=no force=no check=yes
+data='' loop=1 log='' speed=1 pace=lockstep url=$AIRDOS_DEFAULT_URL run_dir='' host_network=no is_inside=no force=no check=yes detect=no
 original_arguments=("$@")
 while (($# > 0)); do
   case $1 in
@@ -43,6 +44,7 @@ while (($# > 0)); do
     --host-network) host_network=yes ;;
     --force) force=yes ;;
     --no-check) check=no ;;
+    --detect) detect=yes ;;
     --inside) is_inside=yes ;; # internal: the namespace exists
     --help | -h)
       print_help
@@ -60,6 +62,12 @@ url=${lcm_url:-$url}
 [[ -z $log || -f $log ]] || die_usage "--log: no file '$log'"
 [[ $speed =~ ^[0-9]+(\.[0-9]+)?$ ]] || die_usage "--speed: not a number: '$speed'"
 [[ $pace == lockstep || $pace == realtime ]] || die_usage "--pace: '$pace' is neither lockstep nor realtime"
+channels=$AIRDOS_CAMERA_CHANNELS
+if [[ $detect == yes ]]; then
+  PROCESSES+=(person-detector)
+  channels='^(CAMERA_LEFT|CAMERA_RIGHT|CALIBRATION|GROUND_TRUTH)$'
+fi
+readonly PROCESSES channels
 for process in "${PROCESSES[@]}"; do need_program "airdos-$process"; done
 if [[ -n $data ]]; then need_program airdos-stereo-player; fi
 if [[ -n $log ]]; then
@@ -253,6 +261,9 @@ start human-tracker "$AIRDOS_BIN/airdos-human-tracker" "${arguments[@]}" --resol
 start optimizer "$AIRDOS_BIN/airdos-optimizer" "${arguments[@]}" --resolved-config "$run_dir/optimizer.yaml"
 start map-recorder "$AIRDOS_BIN/airdos-map-recorder" "${arguments[@]}" --set "output.directory=$run_dir" \
   --resolved-config "$run_dir/map_recorder.yaml"
+if [[ $detect == yes ]]; then
+  start person-detector "$AIRDOS_BIN/airdos-person-detector" "${arguments[@]}" --resolved-config "$run_dir/person_detector.yaml"
+fi
 for process in "${PROCESSES[@]}"; do wait_until_ready "$process"; done
 say "READY: ${PROCESSES[*]} on $url"
 if [[ $host_network == no ]]; then
@@ -263,10 +274,11 @@ if [[ -n $data ]]; then
   player_options=()
   if ((loop > 1)); then player_options=(--loop "$loop" --one-session --say-every 500); fi
   if [[ $check == no ]]; then player_options+=(--no-check); fi
+  if [[ $detect == yes ]]; then player_options+=(--without "keypoints,masks"); fi
   start player "$AIRDOS_BIN/airdos-stereo-player" --data "$data" "${arguments[@]}" \
     --resolved-config "$run_dir/stereo_player.yaml" "${player_options[@]}"
 elif [[ -n $log ]]; then
-  start player lcm-logplayer -s "$speed" -e "$AIRDOS_CAMERA_CHANNELS" -l "$url" "$log"
+  start player lcm-logplayer -s "$speed" -e "$channels" -l "$url" "$log"
 fi
 while [[ $stopping == no ]]; do
   show_news

@@ -35,7 +35,7 @@ struct PersonDetectorOptions {
       BoxNetworkOptions();       ///< SimCC: the network that finds the boxes (YOLO)
   double min_joint_score = 0.1;  ///< joints below it count as not seen
   int min_joints = 4;            ///< people of whom fewer joints are seen are nobody
-  Right right = Right::kNetwork;
+  Right right = Right::kRows;    ///< better and cheaper: docs/people.md
   RowSearchOptions rows;
   int detect_every = 1;  ///< images; in those between, joints are followed by optical flow
   ImageFlowOptions flow;

@@ -48,6 +48,7 @@ std::vector<PersonPose> SimccPose::Process(const cv::Mat& bgr) {
   if (people.size() > static_cast<std::size_t>(options_.max_people))
     people.resize(static_cast<std::size_t>(options_.max_people));
   for (PersonPose& person : people) {
+    person.joints = {};  // of the other network, if it has any
     if (person.box_px.width >= 1 && person.box_px.height >= 1) FindJoints(bgr, &person);
   }
   return people;

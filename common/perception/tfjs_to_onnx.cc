@@ -15,7 +15,7 @@ namespace {
 
 using Wholes = std::vector<std::int64_t>;
 
-constexpr int kMaxDepth = 5000;
+constexpr int kMaxDepth = 1000;
 constexpr char kImage[] = "image";
 
 /// A tensor that is computed: its ONNX name, and TensorFlow's shape (1, rows, columns, channels).

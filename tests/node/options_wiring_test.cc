@@ -22,6 +22,7 @@
 #include "processes/human_tracker/human_tracker_options.h"
 #include "processes/map_recorder/map_recorder_options.h"
 #include "processes/optimizer/optimizer_options.h"
+#include "processes/person_detector/person_detector_options.h"
 #include "processes/stereo_player/player_options.h"
 
 namespace airdos {
@@ -42,8 +43,8 @@ Process Make() {
 
 const std::vector<std::function<Process()>>& Makers() {
   static const std::vector<std::function<Process()>> makers{
-      Make<FrontendOptions>, Make<HumanTrackerOptions>, Make<OptimizerOptions>,
-      Make<MapRecorderOptions>, Make<PlayerOptions>};
+      Make<FrontendOptions>,    Make<HumanTrackerOptions>,   Make<OptimizerOptions>,
+      Make<MapRecorderOptions>, Make<PersonDetectorOptions>, Make<PlayerOptions>};
   return makers;
 }
 

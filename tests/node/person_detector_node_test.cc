@@ -41,6 +41,7 @@ class PersonDetectorNodeTest : public ::testing::Test {
                          "network.outputs=centre,heatmaps,regression,offsets",
                          "network.width_px=128",
                          "network.height_px=96",
+                         "stereo.right=network",
                          "masks.file=" + scratch_.Write("mask.onnx", TinyMask({64, 64})),
                          "masks.outputs=mask",
                          "masks.side_px=64",
@@ -82,9 +83,7 @@ void SendImage(const std::string& channel, const Header& header, const cv::Mat& 
   node->Receive(channel, bytes.data(), bytes.size());
 }
 
-Header HeaderAt(std::int64_t seq, std::int64_t session = 7) {
-  return {1000 * seq, seq, session};
-}
+Header HeaderAt(std::int64_t seq, std::int64_t session = 7) { return {1000 * seq, seq, session}; }
 
 /// Exactly one message on each channel, valid, with the header of the frame.
 Output TakeOne(const Header& header, Node* node) {
@@ -107,13 +106,13 @@ Output TakeOne(const Header& header, Node* node) {
     if (envelope.channel == channel::kPersonKeypointsRight) decode(envelope, &output.right);
     if (envelope.channel == channel::kPersonMask) decode(envelope, &output.mask);
   }
-  EXPECT_EQ(channels, (std::multiset<std::string>{channel::kPersonKeypointsLeft,
-                                                  channel::kPersonKeypointsRight,
-                                                  channel::kPersonMask}));
+  EXPECT_EQ(channels,
+            (std::multiset<std::string>{channel::kPersonKeypointsLeft,
+                                        channel::kPersonKeypointsRight, channel::kPersonMask}));
   return output;
 }
 
-Output Run(const cv::Mat& left, const cv::Mat& right, const Header& header, Node* node) {
+Output Feed(const cv::Mat& left, const cv::Mat& right, const Header& header, Node* node) {
   SendImage(channel::kCameraLeft, header, left, node);
   SendImage(channel::kCameraRight, header, right, node);
   return TakeOne(header, node);
@@ -121,10 +120,10 @@ Output Run(const cv::Mat& left, const cv::Mat& right, const Header& header, Node
 
 TEST_F(PersonDetectorNodeTest, FindsPeopleInBothImages) {
   const auto node = MakeNode();
-  const Output output = Run(Image(0), Image(-3), HeaderAt(5), node.get());
+  const Output output = Feed(Image(0), Image(-3), HeaderAt(5), node.get());
   ASSERT_EQ(output.left.num_people, 1);
   ASSERT_EQ(output.right.num_people, 1);
-  EXPECT_EQ(output.left.layout, person_keypoints_t::LAYOUT_COCO17);
+  EXPECT_EQ(output.left.layout, int{person_keypoints_t::LAYOUT_COCO17});
   EXPECT_EQ(output.left.num_joints, 17);
   for (std::size_t joint = 0; joint < 17; ++joint) {
     EXPECT_NEAR(output.left.u_px[0][joint], 8 * (12 - 0.5), 1e-3);
@@ -139,10 +138,25 @@ TEST_F(PersonDetectorNodeTest, FindsPeopleInBothImages) {
   EXPECT_EQ(mask->at<unsigned char>(100, 250), 0);
 }
 
+TEST_F(PersonDetectorNodeTest, AMissingNetworkIsSaidWithItsKey) {
+  const auto error_of = [&](const Settings& settings) {
+    return ErrorOf([&] { MakeNode(settings); });
+  };
+  EXPECT_TRUE(Holds(error_of({"network.file=/nowhere/n.onnx"}), "/nowhere/n.onnx"));
+  EXPECT_TRUE(Holds(error_of({"network.head=yolo", "network.file="}), "network.file: is empty"));
+  EXPECT_TRUE(Holds(error_of({"network.head=simcc"}), "boxes.file: is empty"));
+  EXPECT_TRUE(Holds(error_of({"network.width_px=0"}), "network.height_px: one of them is 0"));
+  EXPECT_TRUE(Holds(error_of({"boxes.width_px=32"}), "boxes.height_px: one of them is 0"));
+  // There is no installed folder beside a test, and the build folder may have them or not.
+  const std::string fetched = error_of({"masks.file=", "masks.outputs=", "masks.side_px=256"});
+  EXPECT_TRUE(fetched.empty() || Holds(fetched, "launch_scripts/fetch_networks.sh fetches it"))
+      << fetched;
+}
+
 TEST_F(PersonDetectorNodeTest, NobodyIsSaidAsWell) {
   const auto node = MakeNode();
   const cv::Mat empty(192, 256, CV_8UC3, cv::Scalar::all(0));
-  const Output output = Run(empty, empty, HeaderAt(0), node.get());
+  const Output output = Feed(empty, empty, HeaderAt(0), node.get());
   EXPECT_EQ(output.left.num_people, 0);
   EXPECT_EQ(output.right.num_people, 0);
   const std::optional<cv::Mat> mask = DecodeMask(output.mask);
@@ -162,7 +176,7 @@ TEST_F(PersonDetectorNodeTest, AnImageThatIsMissingOrBrokenHasNobody) {
   output = TakeOne(HeaderAt(2), node.get());
   EXPECT_EQ(output.left.num_people, 0);
   EXPECT_EQ(output.right.num_people, 1);
-  EXPECT_EQ(output.mask.encoding, person_mask_t::ENCODING_NONE);
+  EXPECT_EQ(output.mask.encoding, int{person_mask_t::ENCODING_NONE});
   EXPECT_EQ(node->channels().at(channel::kCameraLeft).num_rejected, 1);
 }
 
@@ -171,18 +185,18 @@ TEST_F(PersonDetectorNodeTest, TheSameImagesGiveTheSameBytes) {
   const auto second = MakeNode({"time.detect_every=3"});
   for (int seq = 0; seq < 5; ++seq) {
     const Header header = HeaderAt(seq);
-    EXPECT_EQ(Run(Image(), Image(-2), header, first.get()).bytes,
-              Run(Image(), Image(-2), header, second.get()).bytes);
+    EXPECT_EQ(Feed(Image(), Image(-2), header, first.get()).bytes,
+              Feed(Image(), Image(-2), header, second.get()).bytes);
   }
 }
 
 TEST_F(PersonDetectorNodeTest, ANewSessionBeginsWithADetection) {
   const auto node = MakeNode({"time.detect_every=100"});
-  Run(Image(), Image(), HeaderAt(0, 1), node.get());
+  Feed(Image(), Image(), HeaderAt(0, 1), node.get());
   const cv::Mat empty(192, 256, CV_8UC3, cv::Scalar::all(0));
-  const Output output = Run(empty, empty, HeaderAt(0, 2), node.get());
+  const Output output = Feed(empty, empty, HeaderAt(0, 2), node.get());
   EXPECT_EQ(output.left.num_people, 0);
-  EXPECT_EQ(Run(Image(), Image(), HeaderAt(1, 2), node.get()).left.num_people, 0);
+  EXPECT_EQ(Feed(Image(), Image(), HeaderAt(1, 2), node.get()).left.num_people, 0);
 }
 
 TEST_F(PersonDetectorNodeTest, ANetworkThatDoesNotFitIsSaidAndTheFrameGoesOn) {

@@ -147,6 +147,7 @@ TEST_F(CommandLineTest, EachProcessPrintsItsConfigurationAndWhatItMeans) {
                                                       {"airdos-human-tracker", "human_tracker"},
                                                       {"airdos-map-recorder", "map_recorder"},
                                                       {"airdos-optimizer", "optimizer"},
+                                                      {"airdos-person-detector", "person_detector"},
                                                       {"airdos-stereo-player", "stereo_player"}};
   for (const auto& [program, config] : configs) {
     std::ifstream file(AIRDOS_SOURCE_DIR "/launch_scripts/config/" + config + ".yaml");
