@@ -24,6 +24,31 @@ std::unique_ptr<PoseNetwork> MakeNetwork(const PersonDetectorOptions& options) {
   return std::make_unique<MoveNet>(options.pose);
 }
 
+constexpr std::size_t kMinFollowed = 3;  // joints, so that most of them outvote one that slipped
+
+/// Moves each joint to its place in the next image; one that was lost moves as the others do in the
+/// median, with half its score. If most are lost, so is the person.
+void Carry(const std::vector<std::optional<Eigen::Vector2d>>& places, PersonPose* person) {
+  std::vector<double> du_px, dv_px;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const BodyKeypoint& joint = person->joints[i];
+    if (joint.confidence <= 0 || !places[i]) continue;
+    du_px.push_back(places[i]->x() - joint.u_px);
+    dv_px.push_back(places[i]->y() - joint.v_px);
+  }
+  if (du_px.size() < kMinFollowed) {
+    person->joints = {};
+    return;
+  }
+  const Eigen::Vector2d shift_px(*Median(du_px), *Median(dv_px));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    BodyKeypoint& joint = person->joints[i];
+    if (joint.confidence <= 0) continue;
+    const Eigen::Vector2d place = places[i].value_or(joint.uv_px() + shift_px);
+    joint = {place.x(), place.y(), places[i] ? joint.confidence : joint.confidence / 2};
+  }
+}
+
 }  // namespace
 
 PersonDetector::PersonDetector(const PersonDetectorOptions& options)
@@ -84,11 +109,8 @@ void PersonDetector::Follow(View* view) const {
   const auto to = view->flow->Follow(from, guess);
   auto next = to.begin();
   for (PersonPose& person : view->people) {
-    for (BodyKeypoint& joint : person.joints) {
-      const std::optional<Eigen::Vector2d>& place = *next++;
-      if (joint.confidence <= 0) continue;
-      joint = place ? BodyKeypoint{place->x(), place->y(), joint.confidence} : BodyKeypoint();
-    }
+    Carry({next, next + kNumPoseJoints}, &person);
+    next += kNumPoseJoints;
     person.box_px = BoxOfJoints(person, options_.min_joint_score);
   }
   view->people = Credible(std::move(view->people));

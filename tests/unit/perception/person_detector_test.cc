@@ -117,6 +117,19 @@ TEST_F(PersonDetectorTest, WhoCannotBeFollowedIsLost) {
   EXPECT_TRUE(detector.Process(cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(9)), {}).left.empty());
 }
 
+TEST_F(PersonDetectorTest, AJointThatIsCoveredMovesAsTheOthersDo) {
+  options_.detect_every = 2;
+  PersonDetector detector = Make({PersonAt(100, 80)});
+  detector.Process(Texture(0), {});
+  cv::Mat next = Texture(3);
+  cv::rectangle(next, cv::Rect(85, 68, 20, 20), cv::Scalar::all(100), cv::FILLED);  // joint 0
+  const std::vector<PersonPose> people = detector.Process(next, {}).left;
+  ASSERT_EQ(people.size(), 1u);
+  EXPECT_NEAR(people[0].joints[0].u_px, 100 - 3, 0.5);
+  EXPECT_EQ(people[0].joints[0].confidence, 0.45);
+  EXPECT_EQ(people[0].joints[14].confidence, 0.9);
+}
+
 TEST_F(PersonDetectorTest, AfterAResetItDetects) {
   options_.detect_every = 100;
   PersonDetector detector = Make({PersonAt(100, 80)});
