@@ -57,7 +57,7 @@ PersonDetector::PersonDetector(const PersonDetectorOptions& options)
 PersonDetector::PersonDetector(const PersonDetectorOptions& options,
                                std::unique_ptr<PoseNetwork> network)
     : options_(options), network_(std::move(network)) {
-  if (options_.has_masks) masker_ = std::make_unique<PersonMasker>(options_.masks);
+  if (options_.use_masks) masker_ = std::make_unique<PersonMasker>(options_.masks);
   Reset();
 }
 

@@ -39,7 +39,7 @@ struct PersonDetectorOptions {
   RowSearchOptions rows;
   int detect_every = 1;  ///< images; in those between, joints are followed by optical flow
   ImageFlowOptions flow;
-  bool has_masks = true;
+  bool use_masks = true;
   PersonMaskerOptions masks;
 };
 

@@ -32,7 +32,7 @@ NetworkInputOptions UnitInput() {
 }  // namespace
 
 PersonMasker::PersonMasker(const PersonMaskerOptions& options) : options_(options) {
-  if (options_.has_network) net_ = std::make_unique<DnnNetwork>(options_.network);
+  if (options_.use_network) net_ = std::make_unique<DnnNetwork>(options_.network);
 }
 
 cv::Mat PersonMasker::Process(const cv::Mat& bgr, const std::vector<PersonPose>& people) {

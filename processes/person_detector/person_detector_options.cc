@@ -105,9 +105,9 @@ void AddStereo(PersonDetectorOptions* options, OptionTable* table) {
 void AddMasks(PersonDetectorOptions* options, OptionTable* table) {
   PersonMaskerOptions* masks = &options->masks;
   table->AddSection("masks");
-  table->Add("masks.use", &options->has_masks,
+  table->Add("masks.use", &options->use_masks,
              "publish masks; without, others draw their own around the joints");
-  table->Add("masks.use_network", &masks->has_network,
+  table->Add("masks.use_network", &masks->use_network,
              "a network marks people who are large enough; without, the joints alone");
   table->Add("masks.file", &masks->network.file, "of that network; empty: the fetched one");
   table->Add("masks.input", &masks->network.input,
@@ -155,7 +155,7 @@ PersonDetectorOptions ReadPersonDetectorOptions(ConfigReader* config) {
     throw InputError("person_detector: network.file: is empty; this head needs a file of yours");
   if (options.head == Head::kSimcc && options.boxes.network.file.empty())
     throw InputError("person_detector: boxes.file: is empty; simcc needs a network of boxes");
-  if (options.has_masks && options.masks.has_network)
+  if (options.use_masks && options.masks.use_network)
     UseFetched("masks.use_network=false", {"selfie.json", {"activation_10"}, ""},
                &options.masks.network);
   return options;
