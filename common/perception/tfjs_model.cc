@@ -1,6 +1,7 @@
 #include "common/perception/tfjs_model.h"
 
 #include <cstring>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iterator>

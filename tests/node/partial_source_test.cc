@@ -7,6 +7,7 @@
 
 #include "common/util/error.h"
 #include "processes/node/message/channels.h"
+#include "processes/stereo_player/player_loop.h"
 #include "processes/tools/replay/replay_setup.h"
 #include "tests/support/input_errors.h"
 
@@ -67,6 +68,24 @@ TEST(PartialSourceTest, ADetectorTakesThePlaceOfTheRecordedOne) {
   }
   EXPECT_EQ(num_frames, 50);
   EXPECT_EQ(num_images, 50);
+}
+
+TEST(PartialSourceTest, ThePlayerLeavesOutWhatItIsTold) {
+  PlayerOptions options;
+  options.data = AIRDOS_SOURCE_DIR "/logs/road_crossing06.lcm";
+  options.last = 3;
+  options.without = {"masks"};
+  const std::unique_ptr<FrameSource> source = OpenPlayerSource(options, 1);
+  int num_masks = 0;
+  int num_keypoints = 0;
+  for (auto frame = source->NextFrame(); !frame.empty(); frame = source->NextFrame()) {
+    for (const Envelope& message : frame) {
+      num_masks += message.channel == channel::kPersonMask ? 1 : 0;
+      num_keypoints += message.channel == channel::kPersonKeypointsLeft ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(num_masks, 0);
+  EXPECT_EQ(num_keypoints, 4);
 }
 
 }  // namespace
