@@ -38,7 +38,7 @@ PlayerArguments::PlayerArguments(CLI::App* app) : input_(app) {
   app->add_flag("--one-session", options_.is_one_session,
                 "With --loop: one long session, its times and image numbers go on");
   AddInputCheckOptions(app, &options_.check);
-  app->add_option("--say-every", options_.say_every, "Say how far it is every so many frames")
+  app->add_option("--say-every", options_.say_every, "Say how far it is, every N frames")
       ->check(CLI::NonNegativeNumber);
   app->add_option("--pace", pace_, "lockstep: nothing is ever lost; realtime: like cameras")
       ->capture_default_str()

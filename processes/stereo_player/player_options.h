@@ -14,6 +14,8 @@
 
 namespace airdos {
 
+/// When the next frame is published: as soon as the processes have room for it (see LockstepGate),
+/// or at its capture time, like a camera.
 enum class PlayerPace { kLockstep, kRealtime };
 
 /// What the player is asked to do.
