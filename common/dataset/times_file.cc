@@ -10,15 +10,12 @@
 #include "common/util/format.h"
 #include "common/util/quantile.h"
 #include "common/util/text_file.h"
+#include "common/util/words.h"
 
 namespace airdos {
 namespace {
 
-std::string Joined(const TextLine& line) {
-  std::string text;
-  for (const std::string& word : line.words) text += (text.empty() ? "" : " ") + word;
-  return Shown(text);
-}
+std::string Joined(const TextLine& line) { return Shown(JoinWords(line.words, " ")); }
 
 bool IsNumber(const std::string& word, double* number) {
   char* end = nullptr;

@@ -8,6 +8,7 @@
 #include "common/util/error.h"
 #include "common/util/output_files.h"
 #include "common/util/suggestion.h"
+#include "common/util/words.h"
 #include "processes/node/live/lcm_transport.h"
 #include "processes/node/live/process_log.h"
 
@@ -93,9 +94,7 @@ Assignment ParseAssignment(const std::string& text) {
   if (std::find(all.begin(), all.end(), process) == all.end()) {
     const std::string hint = DidYouMean(process, all);
     throw InputError("--set '" + text + "': there is no process '" + process + "'" +
-                     (hint.empty() ? "; there are frontend, human_tracker, optimizer, "
-                                     "map_recorder, stereo_player"
-                                   : hint));
+                     (hint.empty() ? "; there are " + JoinWords(all, ", ") : hint));
   }
   return {process, text.substr(colon + 1)};
 }

@@ -22,10 +22,7 @@ namespace {
 
 /// Wraps the text into lines of at most `width` columns.
 std::string Wrapped(const std::string& text, std::size_t width) {
-  std::string lines;
-  for (const std::string& line : WrapWords(text, width))
-    lines += (lines.empty() ? "" : "\n") + line;
-  return lines;
+  return JoinWords(WrapWords(text, width), "\n");
 }
 
 /// Formats --help with line wrapping.
@@ -154,8 +151,7 @@ void AddForce(bool* force, CLI::App* app) {
 }
 
 CLI::Validator OneOf(const std::vector<std::string>& words) {
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  const std::string list = JoinWords(words, ", ");
   const auto check = [words, list](std::string& word) -> std::string {
     if (std::find(words.begin(), words.end(), word) != words.end()) return "";
     return "'" + word + "' is none of " + list + DidYouMean(word, words);
