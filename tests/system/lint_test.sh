@@ -153,7 +153,7 @@ the_same_local_name_is_no_mistake() {
   rm "$root"/common/util/{thing.h,three_too.cc}
   # Programs are joined, too; so is a function with an attribute with a type of its name, but not one that macros of GoogleTest name.
   unit main_one <<< $'int main() { return 1; }'
-  unit main_two <<< $'int main() { return 2; }'
+  unit main_two <<< $'int main() {}'
   printf '#pragma once\n\n// main() calls it.\n[[nodiscard]] int Ten();\n' > "$root/common/util/ten.h"
   unit ten <<< $'#include "common/util/ten.h"\n\nint Ten() { return 10; }'
   unit three <<< $'namespace {\nstruct Ten {\n  int a = 3;\n};\n}  // namespace\n\nint Three() { return Ten().a; }'
