@@ -1,5 +1,5 @@
-#ifndef AIRDOS_COMMON_DATASET_CALIB_JSON_H_
-#define AIRDOS_COMMON_DATASET_CALIB_JSON_H_
+#ifndef AIRDOS_COMMON_CALIBRATION_CALIB_JSON_H_
+#define AIRDOS_COMMON_CALIBRATION_CALIB_JSON_H_
 
 #include <string>
 #include <utility>
@@ -19,4 +19,4 @@ inline constexpr char kCalibJsonForm[] =
 
 }  // namespace airdos
 
-#endif  // AIRDOS_COMMON_DATASET_CALIB_JSON_H_
+#endif  // AIRDOS_COMMON_CALIBRATION_CALIB_JSON_H_

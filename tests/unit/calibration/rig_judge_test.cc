@@ -1,0 +1,251 @@
+// What a calibration file must say to be a stereo pair, and what is said where it does not.
+#include "common/calibration/rig_judge.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "common/calibration/calibration_file.h"
+#include "common/calibration/stereo_rectifier.h"
+#include "common/util/error.h"
+#include "tests/support/scratch_folder.h"
+
+namespace airdos {
+namespace {
+
+StereoRig MakeRig() {
+  StereoRig rig;
+  rig.left = {640,
+              480,
+              461.25,
+              458.5,
+              322.75,
+              236.125,
+              LensModel::kRadialTangential,
+              {-0.28, 0.07, 0.0002, 0.00175}};
+  rig.right = {640,
+               480,
+               457.5,
+               456.125,
+               318.5,
+               243.25,
+               LensModel::kRadialTangential,
+               {-0.27, 0.065, -0.0003, 0.0011}};
+  rig.T_L_R.rotation = ExpSo3({0.011, -0.023, 0.007});
+  rig.T_L_R.translation = {0.112, 0.0021, -0.0034};
+  rig.format = "test";
+  return rig;
+}
+
+/// The line that is said about a changed rig; empty where it is taken.
+std::string Complaint(const std::function<void(StereoRig*, CalibrationOptions*)>& change) {
+  StereoRig rig = MakeRig();
+  CalibrationOptions options;
+  change(&rig, &options);
+  try {
+    JudgeRig("x.yaml", options, &rig);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(RigJudge, AGoodRigIsTakenAsItIs) {
+  StereoRig rig = MakeRig();
+  JudgeRig("x.yaml", {}, &rig);
+  EXPECT_EQ(rig.T_L_R.translation, MakeRig().T_L_R.translation);
+  EXPECT_TRUE(rig.notes.empty());
+}
+
+TEST(RigJudge, EachWrongRigIsRefusedWithItsReason) {
+  using Change = std::function<void(StereoRig*, CalibrationOptions*)>;
+  const std::vector<std::pair<Change, std::string>> cases = {
+      {[](StereoRig* r, auto*) {
+         r->T_L_R.translation = {0.01, 0.12, 0};
+       },
+       "one above the other"},
+      {[](StereoRig* r, auto*) {
+         r->T_L_R.translation = {0.01, 0, 0.12};
+       },
+       "one behind the other"},
+      {[](StereoRig* r, auto*) { r->T_L_R.translation.x() = -0.112; }, "--swap"},
+      {[](StereoRig* r, auto*) {
+         r->T_L_R.rotation = ExpSo3({0, 1.5, 0});
+       },
+       "85.94 degrees apart"},
+      {[](StereoRig* r, auto*) { r->T_L_R.translation *= 50; }, "neither m nor mm"},
+      {[](StereoRig* r, auto*) { r->T_L_R.translation *= 0.01; }, "neither m nor mm"},
+      {[](StereoRig* r, auto*) { r->left.fx_px = 1; }, "left camera: focal lengths of 1 and 458.5"},
+      {[](StereoRig* r, auto*) { r->right.cy_px = 481; },
+       "right camera: the principal point (318.5, 481)"},
+      {[](StereoRig* r, auto*) { r->right.distortion.pop_back(); },
+       "right camera: 3 distortion coefficients"},
+      {[](StereoRig* r, auto*) { r->left.distortion[1] = 1e9; },
+       "a distortion coefficient of 1e+09"},
+      {[](StereoRig* r, auto*) { r->right.width = 320; },
+       "differ in size (640x480 px and 320x480 px)"},
+      {[](StereoRig* r, auto*) { r->right.lens = LensModel::kFisheye; }, "the lens models differ"},
+      {[](StereoRig* r, auto*) {
+         r->left.width = r->left.height = r->right.width = r->right.height = 0;
+       },
+       "--size"},
+      {[](StereoRig*, CalibrationOptions* o) {
+         o->format.image_size = {320, 240};
+       },
+       "0.5 times as large"},
+      {[](StereoRig*, CalibrationOptions* o) {
+         o->format.image_size = {480, 640};
+       },
+       "width and height are exchanged"},
+      {[](StereoRig*, CalibrationOptions* o) {
+         o->format.image_size = {640, 400};
+       },
+       "another shape"},
+      {[](StereoRig*, CalibrationOptions* o) { o->are_images_rectified = true; },
+       "does not say how images are rectified"},
+  };
+  for (const auto& [change, expected] : cases) {
+    const std::string complaint = Complaint(change);
+    EXPECT_NE(complaint.find(expected), std::string::npos)
+        << "'" << complaint << "' lacks '" << expected << "'";
+    EXPECT_EQ(complaint.rfind("x.yaml: ", 0), 0u) << complaint;
+    EXPECT_EQ(complaint.find('\n'), std::string::npos);
+  }
+}
+
+TEST(RigJudge, MillimetresAreConvertedAndSaid) {
+  StereoRig rig = MakeRig();
+  rig.T_L_R.translation *= 1000;
+  JudgeRig("x.yaml", {}, &rig);
+  EXPECT_LT((rig.T_L_R.translation - MakeRig().T_L_R.translation).norm(), 1e-12);
+  ASSERT_EQ(rig.notes.size(), 1u);
+  EXPECT_NE(rig.notes[0].find("in mm"), std::string::npos);
+}
+
+TEST(RigJudge, AUnitThatTheUserNamesIsTaken) {
+  StereoRig rig = MakeRig();
+  rig.T_L_R.translation *= 100;
+  CalibrationOptions options;
+  options.baseline_unit_m = 0.01;
+  JudgeRig("x.yaml", options, &rig);
+  EXPECT_LT((rig.T_L_R.translation - MakeRig().T_L_R.translation).norm(), 1e-12);
+  EXPECT_TRUE(rig.notes.empty());
+}
+
+TEST(RigJudge, SwapExchangesTheCamerasAndTurnsThePoseRound) {
+  StereoRig rig = Swapped(MakeRig());
+  EXPECT_LT(rig.T_L_R.translation.x(), 0);
+  CalibrationOptions options;
+  options.swap = true;
+  JudgeRig("x.yaml", options, &rig);
+  EXPECT_LT(Boxminus(rig.T_L_R, MakeRig().T_L_R).norm(), 1e-12);
+  EXPECT_EQ(rig.left.fx_px, MakeRig().left.fx_px);
+}
+
+TEST(RigJudge, ScaledImagesHaveScaledCameras) {
+  StereoRig rig = MakeRig();
+  CalibrationOptions options;
+  options.format.image_size = {1280, 960};
+  options.scale = true;
+  JudgeRig("x.yaml", options, &rig);
+  EXPECT_EQ(rig.left.width, 1280);
+  EXPECT_DOUBLE_EQ(rig.left.fx_px, 922.5);
+  EXPECT_DOUBLE_EQ(rig.right.fy_px, 912.25);
+  EXPECT_DOUBLE_EQ(rig.left.cx_px, 646);   // (322.75 + 0.5) * 2 - 0.5
+  EXPECT_DOUBLE_EQ(rig.right.cy_px, 487);  // (243.25 + 0.5) * 2 - 0.5
+  EXPECT_EQ(rig.left.distortion, MakeRig().left.distortion);
+  ASSERT_EQ(rig.notes.size(), 1u);
+}
+
+/// A point in the left camera's axes, in px of either original image.
+Eigen::Vector2d Distort(const CameraIntrinsics& c, const Eigen::Vector3d& p) {
+  const double x = p.x() / p.z();
+  const double y = p.y() / p.z();
+  const double r2 = x * x + y * y;
+  const double radial = 1 + r2 * (c.distortion[0] + r2 * c.distortion[1]);
+  const double p1 = c.distortion[2];
+  const double p2 = c.distortion[3];
+  const double xd = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x);
+  const double yd = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y;
+  return {c.fx_px * xd + c.cx_px, c.fy_px * yd + c.cy_px};
+}
+
+TEST(StereoRectifier, TheSamePointHasTheSameRowAndItsDepth) {
+  const StereoRig rig = MakeRig();
+  const StereoRectifier rectifier(rig);
+  const StereoCamera& camera = rectifier.camera();
+  EXPECT_NEAR(camera.baseline_m, rig.T_L_R.translation.norm(), 1e-9);
+  for (const Eigen::Vector3d& p_L :
+       {Eigen::Vector3d(0.3, -0.2, 2), {-0.5, 0.4, 3}, {0, 0, 10}, {1.5, 0.9, 5}}) {
+    const Eigen::Vector2d left = rectifier.RectifyLeft(Distort(rig.left, p_L));
+    const Eigen::Vector2d right =
+        rectifier.RectifyRight(Distort(rig.right, rig.T_L_R.inverse() * p_L));
+    EXPECT_NEAR(left.y(), right.y(), 0.01);
+    const double depth_m = camera.fx_px * camera.baseline_m / (left.x() - right.x());
+    // The rectified camera is turned by a degree or so, thus the point's distance is compared.
+    const Eigen::Vector3d p_C =
+        depth_m * Eigen::Vector3d((left.x() - camera.cx_px) / camera.fx_px,
+                                  (left.y() - camera.cy_px) / camera.fy_px, 1);
+    EXPECT_NEAR(p_C.norm(), p_L.norm(), 0.002 * p_L.norm());
+  }
+}
+
+TEST(StereoRectifier, ImagesFollowTheirPixels) {
+  const StereoRig rig = MakeRig();
+  const StereoRectifier rectifier(rig);
+  cv::Mat image(480, 640, CV_8UC3, cv::Scalar(10, 20, 30));
+  const cv::Point spot(400, 150);
+  image(cv::Rect(spot.x - 3, spot.y - 3, 7, 7)) = cv::Scalar(250, 240, 230);
+  const Eigen::Vector2d at = rectifier.RectifyRight({400, 150});
+  const cv::Mat rectified = rectifier.Right(image);
+  ASSERT_EQ(rectified.type(), CV_8UC3);
+  ASSERT_EQ(rectified.size(), image.size());
+  const cv::Vec3b value = rectified.at<cv::Vec3b>(
+      cv::Point(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y()))));
+  EXPECT_EQ(value, cv::Vec3b(250, 240, 230));
+  EXPECT_THROW(rectifier.Left(cv::Mat(480, 641, CV_8UC1)), InputError);
+}
+
+TEST(StereoRectifier, RectifiedImagesPassUntouched) {
+  StereoRig rig = MakeRig();
+  rig.are_images_rectified = true;
+  rig.rectified = StereoCamera{640, 480, 450, 450, 320, 240, 0.112};
+  const StereoRectifier rectifier(rig);
+  EXPECT_TRUE(rectifier.camera() == *rig.rectified);
+  const cv::Mat image(480, 640, CV_8UC1, cv::Scalar(7));
+  EXPECT_EQ(rectifier.Left(image).data, image.data);
+  EXPECT_EQ(rectifier.RectifyLeft({5, 6}), Eigen::Vector2d(5, 6));
+}
+
+TEST(CalibrationFile, WhatIsNoneIsNamed) {
+  const ScratchFolder folder("calibration_file");
+  const auto complaint = [&](const std::vector<std::string>& paths) -> std::string {
+    try {
+      ReadStereoRig(paths, {});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string text = folder.Write("text.txt", "hello");
+  EXPECT_NE(complaint({text}).find("is no calibration file"), std::string::npos);
+  EXPECT_NE(complaint({text}).find("Kalibr"), std::string::npos);
+  EXPECT_NE(complaint({folder.Write("empty", "")}).find("is no calibration file"),
+            std::string::npos);
+  EXPECT_NE(
+      complaint({folder.Write("x.xml", "<?xml version=\"1.0\"?>\n<opencv_storage>")}).find("XML"),
+      std::string::npos);
+  EXPECT_NE(complaint({folder.Write("ros.yaml", "projection_matrix: 1\nrectification_matrix: 2\n")})
+                .find("of one camera"),
+            std::string::npos);
+  EXPECT_NE(
+      complaint({folder.Write("euroc.yaml", "T_BS: 1\nintrinsics: 2\n")}).find("of one camera"),
+      std::string::npos);
+  EXPECT_NE(complaint({text, text}).find("no pair"), std::string::npos);
+  EXPECT_NE(complaint({folder.path()}).find("is a folder"), std::string::npos);
+  EXPECT_NE(complaint({folder.PathOf("none")}).find("cannot be read"), std::string::npos);
+  EXPECT_NE(complaint({}).find("one file or two"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace airdos
