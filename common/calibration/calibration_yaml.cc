@@ -13,8 +13,20 @@ namespace {
 constexpr std::size_t kMaxNumbers = 1000;
 constexpr int kMaxDepth = 8;
 
-/// OpenCV's YAML as others read it: without its head, and with a blank after each colon before a
-/// bracket.
+/// Where a blank is missing after the key of a line ("data:[1, 2]", "PointSize:2"), which only
+/// OpenCV's own reader takes.
+std::size_t MissingBlank(const std::string& line) {
+  std::size_t at = line.find_first_not_of(" \t");
+  if (at == std::string::npos) return std::string::npos;
+  while (at < line.size() && (std::isalnum(static_cast<unsigned char>(line[at])) != 0 ||
+                              line[at] == '_' || line[at] == '.')) {
+    ++at;
+  }
+  const bool is_key = at + 1 < line.size() && line[at] == ':' && line[at + 1] != ' ';
+  return is_key ? at + 1 : std::string::npos;
+}
+
+/// OpenCV's YAML as others read it: without its head, and with a blank after each key.
 std::string Plain(const std::string& text) {
   std::string plain;
   std::istringstream lines(text);
@@ -23,9 +35,8 @@ std::string Plain(const std::string& text) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);
     if (line.rfind("%YAML", 0) == 0) line.clear();
-    for (std::size_t at = line.find(":["); at != std::string::npos; at = line.find(":[", at + 2)) {
-      line.insert(at + 1, " ");
-    }
+    const std::size_t at = MissingBlank(line);
+    if (at != std::string::npos) line.insert(at, " ");
     plain += line + "\n";
   }
   return plain;

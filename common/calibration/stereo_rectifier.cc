@@ -1,5 +1,8 @@
 #include "common/calibration/stereo_rectifier.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -56,9 +59,25 @@ StereoRectifier::StereoRectifier(const StereoRig& rig, const RectifierOptions& o
              P1.at<double>(0, 2),
              P1.at<double>(1, 2),
              -P2.at<double>(0, 3) / P2.at<double>(0, 0)};
+  if (rig.left.lens == LensModel::kFisheye) LimitFieldOfView(options.max_field_of_view_deg);
   RequireImage();
   MakeMaps(&left_);
   MakeMaps(&right_);
+}
+
+// OpenCV chooses the focal length by the borders of the original, which for lenses of 150 degrees
+// and more lie (nearly) at infinity.
+void StereoRectifier::LimitFieldOfView(double max_deg) {
+  const double half_size_px = 0.5 * std::max(camera_.width, camera_.height);
+  const double min_focal_length_px = half_size_px / std::tan(0.5 * max_deg * M_PI / 180);
+  if (camera_.fx_px >= min_focal_length_px && camera_.IsValid()) return;
+  camera_.fx_px = camera_.fy_px = min_focal_length_px;
+  camera_.cx_px = 0.5 * (camera_.width - 1);
+  camera_.cy_px = 0.5 * (camera_.height - 1);
+  char text[120];
+  std::snprintf(text, sizeof(text),
+                "the lens sees more than the %.4g degrees that the rectified images show", max_deg);
+  notes_.push_back(text);
 }
 
 void StereoRectifier::RequireImage() const {

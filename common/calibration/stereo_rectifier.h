@@ -2,6 +2,8 @@
 #define AIRDOS_COMMON_CALIBRATION_STEREO_RECTIFIER_H_
 
 #include <opencv2/core.hpp>
+#include <string>
+#include <vector>
 
 #include "common/calibration/stereo_rig.h"
 
@@ -11,6 +13,9 @@ struct RectifierOptions {
   /// 0: only pixels that both images see; 1: every pixel of the originals is kept, with black
   /// borders (cv::stereoRectify's alpha, the balance of cv::fisheye).
   double alpha = 0;
+  /// Width and height of the rectified image show at most this angle: a pinhole image of a wide
+  /// fisheye lens would spend nearly all of its pixels on the border.
+  double max_field_of_view_deg = 120;
 };
 
 /// Rotates and undistorts the images of a rig (cv::stereoRectify, cv::fisheye::stereoRectify), so
@@ -24,6 +29,8 @@ class StereoRectifier {
 
   /// The rectified pair.
   const StereoCamera& camera() const { return camera_; }
+  /// What users should know about it, a line each: where the lens sees more than is kept.
+  const std::vector<std::string>& notes() const { return notes_; }
   /// Of images of the rig's size, grey or colour. Throws InputError where the size is another.
   cv::Mat Left(const cv::Mat& image) const { return Apply(image, left_); }
   cv::Mat Right(const cv::Mat& image) const { return Apply(image, right_); }
@@ -42,12 +49,14 @@ class StereoRectifier {
     cv::Mat map_fraction;
   };
   void MakeMaps(Side* side) const;
+  void LimitFieldOfView(double max_deg);
   void RequireImage() const;
   cv::Mat Apply(const cv::Mat& image, const Side& side) const;
   Eigen::Vector2d Rectify(const Eigen::Vector2d& uv_px, const Side& side) const;
 
   bool is_identity_ = false;
   StereoCamera camera_;
+  std::vector<std::string> notes_;
   Side left_;
   Side right_;
 };

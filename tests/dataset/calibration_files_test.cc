@@ -40,7 +40,7 @@ class CalibrationFiles : public testing::Test {
   static void ExpectRectifiable(const StereoRig& rig, double baseline_m) {
     const StereoRectifier rectifier(rig);
     EXPECT_NEAR(rectifier.camera().baseline_m, baseline_m, 0.002) << rig.format;
-    EXPECT_GT(rectifier.camera().fx_px, 0.2 * rig.left.fx_px);
+    EXPECT_GT(rectifier.camera().fx_px, 0.6 * rig.left.fx_px);
     EXPECT_LT(rectifier.camera().fx_px, 2 * rig.left.fx_px);
   }
 

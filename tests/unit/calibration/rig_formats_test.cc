@@ -295,7 +295,7 @@ TEST_F(RigFormats, OrbSlam2ToBeRectifiedAndRectified) {
   const std::string head =
       "%YAML:1.0\nCamera.fx: 500.0\nCamera.fy: 501.0\nCamera.cx: 320.5\nCamera.cy: "
       "239.5\nCamera.bf: 55.0\n"
-      "Camera.width: 640\nCamera.height: 480\n";
+      "Camera.width: 640\nCamera.height: 480\nViewer.PointSize:2\n";
   const auto side = [](const std::string& name, const CameraIntrinsics& c, const cv::Mat& R,
                        const cv::Mat& P) {
     return name + ".height: 480\n" + name + ".width: 640\n" +

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
+#include <opencv2/core.hpp>
 
 #include "common/calibration/calibration_file.h"
 #include "common/calibration/stereo_rectifier.h"
@@ -204,6 +206,43 @@ TEST(StereoRectifier, ImagesFollowTheirPixels) {
       cv::Point(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y()))));
   EXPECT_EQ(value, cv::Vec3b(250, 240, 230));
   EXPECT_THROW(rectifier.Left(cv::Mat(480, 641, CV_8UC1)), InputError);
+}
+
+TEST(StereoRectifier, AWideFisheyeLensIsCutToAnAngleAndThatIsSaid) {
+  StereoRig rig = MakeRig();
+  // 512 px at 190 px per radian: 154 degrees.
+  rig.left = {
+      512, 512, 190.5, 190.25, 254.5, 256.5, LensModel::kFisheye, {0.0035, 0.0007, -0.002, 0.0002}};
+  rig.right = {512,
+               512,
+               190.25,
+               190.5,
+               252.5,
+               254.75,
+               LensModel::kFisheye,
+               {0.0034, 0.0018, -0.0027, 0.0003}};
+  const StereoRectifier rectifier(rig);
+  EXPECT_NEAR(rectifier.camera().fx_px, 256 / std::sqrt(3.0), 1e-9);  // tan(60 degrees)
+  EXPECT_EQ(rectifier.camera().cx_px, 255.5);
+  ASSERT_EQ(rectifier.notes().size(), 1u);
+  EXPECT_NE(rectifier.notes()[0].find("120 degrees"), std::string::npos);
+  // A white image stays white up to the border: nothing is invented.
+  const cv::Mat rectified = rectifier.Left(cv::Mat(512, 512, CV_8UC1, cv::Scalar(255)));
+  EXPECT_EQ(cv::countNonZero(rectified == 255), 512 * 512);
+  const Eigen::Vector3d p_L(1.2, -0.7, 1.5);
+  const auto project = [](const CameraIntrinsics& c, const Eigen::Vector3d& p) -> Eigen::Vector2d {
+    const double r = p.head<2>().norm();
+    const double t = std::atan2(r, p.z());
+    double d = t;
+    for (int i = 0; i < 4; ++i)
+      d += c.distortion[static_cast<std::size_t>(i)] * std::pow(t, 2 * i + 3);
+    return {c.fx_px * d * p.x() / r + c.cx_px, c.fy_px * d * p.y() / r + c.cy_px};
+  };
+  const Eigen::Vector2d left = rectifier.RectifyLeft(project(rig.left, p_L));
+  const Eigen::Vector2d right =
+      rectifier.RectifyRight(project(rig.right, rig.T_L_R.inverse() * p_L));
+  EXPECT_NEAR(left.y(), right.y(), 0.01);
+  EXPECT_GT(left.x() - right.x(), 1);
 }
 
 TEST(StereoRectifier, RectifiedImagesPassUntouched) {
