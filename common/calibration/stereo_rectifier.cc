@@ -50,8 +50,8 @@ StereoRectifier::StereoRectifier(const StereoRig& rig, const RectifierOptions& o
                       rig.right.distortion, size, R, t, R1, R2, P1, P2, Q, cv::CALIB_ZERO_DISPARITY,
                       options.alpha, size);
   }
-  left_.R = R1;
-  right_.R = R2;
+  SetRotation(R1, &left_);
+  SetRotation(R2, &right_);
   camera_ = {size.width,
              size.height,
              P1.at<double>(0, 0),
@@ -78,6 +78,11 @@ void StereoRectifier::LimitFieldOfView(double max_deg) {
   std::snprintf(text, sizeof(text),
                 "the lens sees more than the %.4g degrees that the rectified images show", max_deg);
   notes_.push_back(text);
+}
+
+void StereoRectifier::SetRotation(const cv::Matx33d& R, Side* side) {
+  side->R = R;
+  side->R_rect = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(R.val);
 }
 
 void StereoRectifier::RequireImage() const {

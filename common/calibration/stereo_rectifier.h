@@ -29,6 +29,9 @@ class StereoRectifier {
 
   /// The rectified pair.
   const StereoCamera& camera() const { return camera_; }
+  /// p_rect = R_rect * p, of the left and the right camera.
+  Eigen::Matrix3d R_rect_left() const { return left_.R_rect; }
+  Eigen::Matrix3d R_rect_right() const { return right_.R_rect; }
   /// What users should know about it, a line each: where the lens sees more than is kept.
   const std::vector<std::string>& notes() const { return notes_; }
   /// Of images of the rig's size, grey or colour. Throws InputError where the size is another.
@@ -44,10 +47,12 @@ class StereoRectifier {
  private:
   struct Side {
     CameraIntrinsics camera;
-    cv::Matx33d R = cv::Matx33d::eye();  // p_rect = R * p_camera
-    cv::Mat map;                         // fixed point, see cv::convertMaps
+    cv::Matx33d R = cv::Matx33d::eye();                    // p_rect = R * p_camera
+    Eigen::Matrix3d R_rect = Eigen::Matrix3d::Identity();  // the same
+    cv::Mat map;                                           // fixed point, see cv::convertMaps
     cv::Mat map_fraction;
   };
+  static void SetRotation(const cv::Matx33d& R, Side* side);
   void MakeMaps(Side* side) const;
   void LimitFieldOfView(double max_deg);
   void RequireImage() const;
