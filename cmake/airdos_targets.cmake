@@ -61,7 +61,7 @@ function(airdos_program name)
   target_link_libraries(${name} PRIVATE ${ARG_DEPS} airdos_options)
   add_dependencies(airdos_programs ${name})
   airdos_use_precompiled(${name} airdos_pch)
-  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
 endfunction()
 
 # What is tested is optimized as it runs; optimizing the tests would only take time. At -O1 GCC 12 takes an empty optional's

@@ -1,17 +1,17 @@
 #!/bin/bash
-# The whole in one command: installs what is missing, builds, replays a log, evaluates the trajectory.
+# Everything in one command: installs missing packages, builds, replays a log and evaluates the trajectory.
 #
 # Usage: launch_scripts/demo.sh [--log FILE] [--run-dir FOLDER]
 #   --log FILE        LCM log to replay (default: the sample in logs/)
-#   --run-dir FOLDER  where the results go (default: logs/runs/demo)
+#   --run-dir FOLDER  folder for the results (default: logs/runs/demo)
 #   --help            this text
 #
-# The second run takes seconds. The map, trajectories, people and pictures are in the run's folder.
+# A second run takes only seconds. The map, trajectories, people and pictures are in the results folder.
 set -euo pipefail
 # shellcheck source=launch_scripts/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
-# The folder that nobody named is the demo's own.
+# The default folder belongs to the demo.
 replace=(--force)
 log=$AIRDOS_ROOT/logs/road_crossing06.lcm
 run_dir=$AIRDOS_ROOT/logs/runs/demo
@@ -53,7 +53,7 @@ if [[ -s $run_dir/ground_truth.tum ]]; then
     --ground-truth "$run_dir/ground_truth.tum" --json "$run_dir/evaluation.json" --plot "$run_dir/trajectory.png" \
     "${replace[@]}"
 else
-  say "the log holds no ground truth, so there is nothing to compare the trajectory with"
+  say "the log has no ground truth to compare the trajectory with"
 fi
 
 "$AIRDOS_BIN/airdos-map" plot "$run_dir/map.airdos" --out "$run_dir/map.png" "${replace[@]}"

@@ -1,17 +1,17 @@
 #!/bin/bash
-# Looks for inputs that crash, throw, hang or take more than 64 MB at once: builds the fuzz targets (tests/fuzz) with clang's
-# libFuzzer under the address and undefined-behaviour sanitizers, and runs each for some seconds.
+# Searches for inputs that crash, throw, hang or allocate more than 64 MB at once: builds the fuzz targets (tests/fuzz) with clang's
+# libFuzzer and the address and undefined-behaviour sanitizers, and runs each of them for a few seconds.
 #
 # Usage: launch_scripts/fuzz.sh [--seconds N] [--jobs N] [--build-only] [--with-tests] [TARGET…]
-#   --seconds N   for each target (default 10; an hour in all for the 28 targets: 130)
-#   --jobs N      so many targets at a time (default: one a processor)
-#   --build-only  do not run
-#   --with-tests  build the tests that run under sanitizers beside the targets, of the same objects (test.sh runs them)
-#   --list        the names of the targets (after a build)
+#   --seconds N   time per target (default 10; an hour in total for the 28 targets: 130)
+#   --jobs N      number of targets run at the same time (default: one per processor)
+#   --build-only  do not run the targets
+#   --with-tests  also build the tests that run under sanitizers, from the same objects (test.sh runs them)
+#   --list        print the names of the targets (after a build)
 #   --help        this text
 #
-# Seeds are generated, what libFuzzer finds worth keeping is kept in build-fuzz/corpus/TARGET for the next run. An input that
-# fails is kept in build-fuzz/failures; run build-fuzz/bin/airdos_fuzz_TARGET FILE to see it again. Exit 1 if there is any,
+# Seeds are generated, and whatever libFuzzer finds worth keeping is kept in build-fuzz/corpus/TARGET for the next run. Inputs that
+# fail are kept in build-fuzz/failures; to reproduce one, run build-fuzz/bin/airdos_fuzz_TARGET FILE. Exit code 1 if there are any,
 # 77 if clang is not installed.
 set -euo pipefail
 # shellcheck source=launch_scripts/setup.sh
@@ -43,7 +43,7 @@ while (($# > 0)); do
   shift
 done
 
-# The newest clang++ that brings libFuzzer.
+# The newest clang++ that includes libFuzzer.
 find_clang() {
   local compiler runtime
   for compiler in clang++ clang++-19 clang++-16 clang++-15 clang++-14; do
@@ -71,15 +71,15 @@ build_fuzzers() {
     -DAIRDOS_BUILD_TESTS=$tests -DAIRDOS_BUILD_JAVA=OFF -DCMAKE_BUILD_TYPE=Fuzz "-DCMAKE_CXX_FLAGS_FUZZ=-O1 -g1"
 }
 
-# link_to NAME: the program under the name that it goes by.
+# link_to NAME: links the program under a target's name, by which it selects the target.
 link_to() { ln -sf airdos_fuzz "$FOLDER/bin/airdos_fuzz_$1"; }
 
-# run_target NAME MAX_BYTES: false if it failed.
+# run_target NAME MAX_BYTES: returns false on failure.
 run_target() {
   local name=$1 max_bytes=$2 corpus=$FOLDER/corpus/$1 log=$FOLDER/$1.log input
   mkdir -p "$corpus" "$FOLDER/failures"
   link_to "$name"
-  # 64 MB for one allocation; a whole process of sanitized code needs more than one of ours.
+  # 64 MB per allocation; a whole process needs more with sanitizers than without.
   if "$FOLDER/bin/airdos_fuzz_$name" -max_total_time="$seconds" -max_len="$max_bytes" -timeout=10 -malloc_limit_mb=64 \
     -rss_limit_mb=1024 -print_final_stats=1 -artifact_prefix="$FOLDER/failures/$name-" "$corpus" "$FOLDER/seeds/$name" \
     > "$log" 2>&1 < /dev/null; then
@@ -108,14 +108,14 @@ done
 "$FOLDER/bin/airdos_fuzz_seeds" "$FOLDER/seeds" "$AIRDOS_ROOT/logs/road_crossing06.lcm"
 failed=0 num_ended=0
 pids=()
-# Whoever ends this script ends its targets.
+# Ending this script ends its targets.
 end_targets() {
   local pid
   for pid in "${pids[@]:num_ended}"; do kill -TERM -- "-$pid" 2> /dev/null || true; done
 }
 trap end_targets EXIT
 
-# Until the one that runs longest has ended; they all take as long.
+# Waits for the target that has run longest; all of them take equally long.
 await_target() {
   wait "${pids[num_ended]}" || failed=$((failed + 1))
   num_ended=$((num_ended + 1))
@@ -125,7 +125,7 @@ for target in "${all[@]}"; do
   read -r name max_bytes <<< "$target"
   if ((${#targets[@]} > 0)) && [[ " ${targets[*]} " != *" $name "* ]]; then continue; fi
   if ((${#pids[@]} - num_ended >= jobs)); then await_target; fi
-  set -m # a process group each, to be ended as a whole
+  set -m # gives each target its own process group, to be ended as a whole
   run_target "$name" "$max_bytes" &
   set +m
   pids+=($!)

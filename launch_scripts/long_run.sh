@@ -1,24 +1,24 @@
 #!/bin/bash
-# Runs the processes for a long time as they run on a robot: in realtime pace, a sequence at 10 Hz again and again as one long
-# session; or in lockstep, as fast as the machine is, with nothing else to be seen than that all goes on. Prints what was lost, how
-# long frames took and how much memory each process has (Markdown).
+# Runs the processes for a long time as on a robot: in realtime pace, playing a sequence at 10 Hz repeatedly as one long session; or
+# in lockstep, as fast as the machine allows, which only shows that everything keeps working. Prints what was lost, how long frames
+# took and how much memory each process uses (Markdown).
 #
 # Usage: launch_scripts/long_run.sh [FOLDER|LOG] [--minutes N] [--pace realtime|lockstep] [--max-lost PERCENT]
 #                                  [--run-dir FOLDER]
-#   FOLDER|LOG        what is played (default: the sample log)
-#   --minutes N       how long (default 30)
+#   FOLDER|LOG        what to play (default: the sample log)
+#   --minutes N       duration (default 30)
 #   --pace realtime|lockstep
-#                     lockstep: each frame waits until the one before is done, so nothing is lost however slow the machine is
+#                     lockstep: each frame waits until the previous one is done, so nothing is lost, however slow the machine is
 #   --max-lost PERCENT
-#                     of its frames that a process may skip, miss or complete without an input (default 0)
-#   --run-dir FOLDER  where everything goes (default logs/runs/long): long_run.md, memory.tsv (every 5 s: seconds, kB of memory
-#                     (RSS) of each process) and what run_live.sh leaves
+#                     share of its frames that a process may skip, miss or complete without an input (default 0)
+#   --run-dir FOLDER  folder for the results (default logs/runs/long): long_run.md, memory.tsv (every 5 s: seconds, memory (RSS)
+#                     of each process in kB) and the output of run_live.sh
 #   --help            this text
 #
-# Memory growth: the largest of the second half over the largest of the second quarter; the first quarter fills the maps.
-# Exit 1 if more was lost, if any camera image was lost on its way (whatever --max-lost allows: it is about machines that are too
-# slow), or if a process grew by more than 10 % (30 % in less than three minutes: the front end's map takes its time to fill). On a
-# machine that is fast enough and has nothing else to do nothing is lost.
+# Memory growth: the maximum of the second half divided by the maximum of the second quarter; the first quarter fills the maps. Exit
+# code 1 if more than allowed was lost, if any camera image was lost in transit (regardless of --max-lost, which allows for slow
+# machines), or if a process grew by more than 10 % (30 % in less than three minutes, because the frontend's map takes its time to
+# fill). On a machine that is fast enough and otherwise idle, nothing is lost.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -51,11 +51,11 @@ data=${data:-$AIRDOS_ROOT/logs/road_crossing06.lcm}
 [[ -e $data ]] || die_usage "no folder or log '$data'"
 [[ $minutes =~ ^[1-9][0-9]*$ ]] || die_usage "--minutes: not a whole number above 0: '$minutes'"
 [[ $pace == realtime || $pace == lockstep ]] || die_usage "--pace: neither realtime nor lockstep: '$pace'"
-[[ $max_lost =~ ^(100|[0-9]{1,2})$ ]] || die_usage "--max-lost: not a whole number of 0 to 100: '$max_lost'"
+[[ $max_lost =~ ^(100|[0-9]{1,2})$ ]] || die_usage "--max-lost: not a whole number from 0 to 100: '$max_lost'"
 need_program airdos-stereo-player
 max_growth_percent=$((minutes < 3 ? 30 : 10))
 
-# More rounds than there is time for, of at least 1 s each; the run is ended when the time is over.
+# More rounds, of at least 1 s each, than there is time for; the run is stopped when the time is up.
 loops=$((minutes * 60))
 if [[ $pace == lockstep ]]; then loops=$((100 * loops)); fi # a round takes as long as the machine needs
 
@@ -65,7 +65,7 @@ rm -f "$run_dir"/{memory.tsv,long_run.md}
 live_pid=$!
 trap 'kill -TERM "$live_pid" 2> /dev/null || true' EXIT
 
-# A row of memory.tsv; nothing while a process is not there.
+# Appends a row to memory.tsv, unless a process is missing.
 sample() {
   local process pid kb row=$SECONDS
   for process in "${processes[@]}"; do
@@ -90,10 +90,10 @@ trap - EXIT
 ((code == 0)) || die "a process ended badly: see $run_dir/run_live.log"
 [[ -s $run_dir/memory.tsv ]] || die "nothing was measured: see $run_dir/run_live.log"
 
-# of PROCESS REGEX: the number behind REGEX in what a process said when it stopped; the sum if there are several.
-number() { sed -n "s/^airdos-$1: .*$2\([0-9.]*\).*/\1/p" "$run_dir/$1.log" | awk '{ sum += $1 } END { print sum + 0 }'; }
+# number PROCESS REGEX: the number after REGEX in a process' final messages; the sum if there are several.
+number() { sed -n "s/^[^ ]* airdos-$1: info: .*$2\([0-9.]*\).*/\1/p" "$run_dir/$1.log" | awk '{ sum += $1 } END { print sum + 0 }'; }
 
-# growth COLUMN: MB at the start and at the end; growth in %.
+# growth COLUMN: MB at the start and at the end, and growth in %.
 growth() {
   awk -F'\t' -v i="$1" '
     { mb[NR] = $i / 1024 }
@@ -117,7 +117,7 @@ failed=no
     num_done=$(number "$process" 'frames done ')
     echo "| $process | $num_done | $incomplete | $skipped | $missing | $(number "$process" 'p50 ') |" \
       "$(number "$process" 'p99 ') | $first | $last | $percent |"
-    # Of the images a frame was done without, these came after all, too late.
+    # Of the images that frames were done without, these did arrive, but too late.
     images_late=$(number "$process" 'CAMERA_[A-Z]*: received [0-9]*, missing [0-9]*, duplicate ')
     images_lost=$(($(number "$process" 'CAMERA_[A-Z]*: received [0-9]*, missing ') - images_late))
     ((num_done > 0)) || failed=idle
@@ -130,7 +130,7 @@ failed=no
 cat "$run_dir/long_run.md"
 case $failed in
   idle) die "a process did nothing (logs: $run_dir)" ;;
-  images) die "camera images were lost on their way: see airdos-doctor (logs: $run_dir)" ;;
+  images) die "camera images were lost in transit: see airdos-doctor (logs: $run_dir)" ;;
   lost) die "frames or messages were lost: is the machine fast enough, and idle? (logs: $run_dir)" ;;
   grown) die "a process grew by more than $max_growth_percent %" ;;
 esac

@@ -1,15 +1,17 @@
 #!/bin/bash
-# Sets this machine up for LCM's multicast, or only checks it.
+# Sets up this machine for LCM's multicast, or only checks it.
 #
-#   network_setup.sh                 loopback only: all processes on this machine
-#   network_setup.sh --interface IF  multicast through network interface IF, to spread processes over hosts (use ?ttl=1 in --lcm-url)
-#   network_setup.sh --check         changes nothing; without --interface it looks at the one that LCM's messages go through,
-#                                    as airdos-doctor does, whose verdict is the same
+# Usage: launch_scripts/network_setup.sh [--interface IF] [--check]
+#   --interface IF  multicast through network interface IF, to distribute processes over hosts (use ?ttl=1 in --lcm-url);
+#                   default: the loopback interface, for processes on this machine only
+#   --check         changes nothing; without --interface it checks the one that LCM's messages are sent
+#                   through, like airdos-doctor, which comes to the same conclusion
+#   --help          this text
 #
-# Three things: the interface is up and has its multicast flag, 224.0.0.0/4 has a route through it, and sockets may ask for a
-# receive buffer of 4 MiB (net.core.rmem_max), which lossless images need. Exit code 0: all is well (a buffer that takes messages
-# of 128 kB only warns); 1: something is missing and was not or could not be mended; 2: wrong arguments. Nothing outlives a reboot.
-# airdos-doctor looks at more: other runs on the port, a round trip, disk, lcm-spy.
+# Three things are needed: the interface is up and has its multicast flag, 224.0.0.0/4 is routed through it, and sockets may have
+# a receive buffer of 4 MiB (net.core.rmem_max), as lossless images require. Exit code 0: everything is fine (a buffer that only
+# suffices for messages of 128 kB causes a warning); 1: something is missing and was not, or could not be, fixed; 2: wrong
+# arguments. The settings do not survive a reboot. airdos-doctor tests more: other runs on the port, a round trip, disk, lcm-spy.
 set -u
 
 readonly WANTED_RMEM_BYTES=4194304
@@ -18,8 +20,6 @@ readonly LCM_ADDRESS=239.255.76.67
 interface=
 check_only=false
 
-usage() { sed -n '2,/^set -u/{/^#/s/^# \{0,1\}//p}' "$0"; }
-
 while [ $# -gt 0 ]; do
   case $1 in
     --check) check_only=true ;;
@@ -27,15 +27,18 @@ while [ $# -gt 0 ]; do
       [ $# -ge 2 ] || { echo "network_setup.sh: --interface needs a name" >&2; exit 2; }
       interface=$2
       shift ;;
-    -h|--help) usage; exit 0 ;;
-    --version) . "$(dirname "$0")/common.sh" --version ;; # which prints it and ends
+    -h|--help|--version)
+      # shellcheck source=launch_scripts/common.sh
+      . "$(dirname "$(readlink -f "$0")")/common.sh" "$1" # prints the version and exits
+      print_help
+      exit 0 ;;
     *) echo "network_setup.sh: unknown argument '$1'" >&2; exit 2 ;;
   esac
   shift
 done
 
 command -v ip >/dev/null || { echo "network_setup.sh: the program 'ip' is missing (package iproute2)" >&2; exit 1; }
-# Where the kernel sends LCM's messages, by whatever route; empty if nowhere.
+# The interface to which the kernel routes LCM's messages; empty if there is none.
 interface_in_use() { ip -4 -o route get "$LCM_ADDRESS" 2>/dev/null | sed -n 's/.* dev \([^ ]*\).*/\1/p'; }
 if [ -z "$interface" ] && $check_only; then interface=$(interface_in_use); fi
 interface=${interface:-lo}
@@ -46,9 +49,13 @@ as_root() {
   if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
 }
 
+# shellcheck disable=SC2317 # require() calls it
 has_flag() { ip link show dev "$interface" | head -n 1 | grep -q "[<,]$1[,>]"; }
+# shellcheck disable=SC2317 # require() calls it
 is_up() { has_flag UP; }
+# shellcheck disable=SC2317 # require() calls it
 is_multicast() { has_flag MULTICAST; }
+# shellcheck disable=SC2317 # require() calls it
 has_route() {
   if $check_only; then [ "$(interface_in_use)" = "$interface" ]; return; fi
   ip -4 route show exact 224.0.0.0/4 | grep -q "dev $interface\b"
@@ -58,7 +65,7 @@ rmem_bytes() { cat /proc/sys/net/core/rmem_max 2>/dev/null || echo 0; }
 has_buffer() { [ "$(rmem_bytes)" -ge "$WANTED_RMEM_BYTES" ]; }
 
 missing=0
-# require TEST WHAT COMMAND...: runs the command if the test fails, and tests again
+# require TEST WHAT COMMAND...: if the test fails, runs the command and tests again
 require() {
   local test=$1 what=$2
   shift 2
@@ -71,7 +78,7 @@ require() {
 require is_up "interface $interface is up" ip link set dev "$interface" up
 require is_multicast "interface $interface has its multicast flag" ip link set dev "$interface" multicast on
 if has_other_route; then
-  # Two routes for one address: which one wins is not what anybody wants to find out.
+  # Two routes for the same addresses: do not leave it to chance which one is used.
   echo "note     another route for 224.0.0.0/4: $(ip -4 route show exact 224.0.0.0/4 | grep -v "dev $interface\b" | head -n 1)"
 fi
 require has_route "multicast route 224.0.0.0/4 through $interface" ip route replace 224.0.0.0/4 dev "$interface"
@@ -81,11 +88,11 @@ if has_buffer; then
 elif ! $check_only && as_root sysctl -q -w net.core.rmem_max=$WANTED_RMEM_BYTES 2>/dev/null && has_buffer; then
   echo "set      sockets may have a receive buffer of $WANTED_RMEM_BYTES bytes"
 elif [ "$(rmem_bytes)" -lt "$LEAST_RMEM_BYTES" ]; then
-  echo "MISSING  receive buffers end at $(rmem_bytes) bytes: messages of up to 128 kB do not fit and are lost" \
+  echo "MISSING  receive buffers are limited to $(rmem_bytes) bytes: messages of up to 128 kB do not fit and are lost" \
        "   (mend with: sudo sysctl -w net.core.rmem_max=$WANTED_RMEM_BYTES)"
   missing=1
 else
-  echo "warning  receive buffers end at $(rmem_bytes) bytes: images above 120 kB may be lost" \
+  echo "warning  receive buffers are limited to $(rmem_bytes) bytes: images above 120 kB may be lost" \
        "(mend with: sudo sysctl -w net.core.rmem_max=$WANTED_RMEM_BYTES)"
 fi
 exit $missing

@@ -1,18 +1,18 @@
 #!/bin/bash
-# Plays an LCM log into the processes that run_live.sh has started.
+# Plays an LCM log to the processes that run_live.sh has started.
 #
 # Usage: launch_scripts/replay_log.sh FILE [--speed X] [--run-dir FOLDER] [--no-check]
-#   FILE              LCM log; only what came from the camera is played
+#   FILE              LCM log; only the channels of camera and detectors are played
 #   --speed X         1 as recorded, 2 twice as fast, 0 as fast as possible (default 1)
-#   --run-dir FOLDER  of which run (default logs/runs/latest)
-#   --no-check        do not look at the log before it is played
+#   --run-dir FOLDER  the run to play it to (default logs/runs/latest)
+#   --no-check        do not check the log before playing it
 #   --help            this text
 #
-# Each play is a session of its own: the first of a run keeps the log's number and is lcm-logplayer's; since the processes drop what
-# they have worked on already, the next ones get new numbers, from airdos-stereo-player.
+# Each time, the log is played as a new session. The first time in a run, lcm-logplayer plays it with the session number in the log.
+# Since the processes ignore frames that they have already processed, airdos-stereo-player plays it with new numbers after that.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 log='' speed=1 run_dir=$AIRDOS_RUNS/latest check=yes
 while (($# > 0)); do
@@ -34,7 +34,7 @@ while (($# > 0)); do
       ;;
     -*) die_usage "unknown option '$1' (see --help)" ;;
     *)
-      [[ -z $log ]] || die_usage "one log only, not also '$1'"
+      [[ -z $log ]] || die_usage "only one log can be played, not '$1' as well"
       log=$1
       ;;
   esac
@@ -47,7 +47,7 @@ done
 command -v lcm-logplayer > /dev/null || die "lcm-logplayer is missing: 'apt-get install liblcm-bin'"
 if [[ $check == yes && -x $AIRDOS_BIN/airdos-check ]]; then
   "$AIRDOS_BIN/airdos-check" --quick "$log" > /dev/null ||
-    die_usage "'$log' cannot be used: 'airdos-check $log' says why, --no-check plays it all the same"
+    die_usage "'$log' cannot be used: 'airdos-check $log' says why; --no-check plays it anyway"
 fi
 
 enter_network "$(state_of pid "$run_dir")"
@@ -60,7 +60,7 @@ if [[ -z $played ]]; then
 fi
 need_program airdos-stereo-player
 session=$(date +%s%6N)
-say "$log to $url at speed $speed, as session $session: these processes have worked on a log already"
+say "$log to $url at speed $speed, as session $session: these processes have already processed a log"
 pace=(--pace realtime --rate "$speed")
 if [[ $speed =~ ^0+(\.0+)?$ ]]; then pace=(--pace lockstep); fi
 exec "${ENTER_NETWORK[@]}" "$AIRDOS_BIN/airdos-stereo-player" --log "$log" --session "$session" --no-check --lcm-url "$url" "${pace[@]}"

@@ -1,27 +1,27 @@
 #!/bin/bash
-# Runs the processes as they are meant to be: separately, on one LCM URL.
+# Runs the processes as intended: separately, with one LCM URL.
 #
 # Usage: launch_scripts/run_live.sh [--data FOLDER | --log FILE] [options]
-#   --data FOLDER         also start the player on this data set, and end when everything has been worked on; a log will do
-#   --loop N              of --data: N times, as one long session (default 1); says every 500 frames how far it is
-#   --log FILE            also play this LCM log (only what came from the camera), and end likewise
-#   --speed X             of --log: 1 as recorded, 2 twice as fast, 0 as fast as possible (default 1)
+#   --data FOLDER         also start the player on this data set, and stop when all of it has been processed; can be a log, too
+#   --loop N              with --data: play it N times as one long session (default 1), reporting progress every 500 frames
+#   --log FILE            also play this LCM log (only the channels of camera and detectors), and stop likewise
+#   --speed X             with --log: 1 as recorded, 2 twice as fast, 0 as fast as possible (default 1)
 #   --pace lockstep|realtime
 #                         lockstep: nothing is lost; realtime: the newest image counts (default lockstep)
 #   --lcm-url URL         (default udpm://239.255.76.67:7667?ttl=0)
-#   --run-dir FOLDER      where logs and results go (default logs/runs/<time>); logs/runs/latest points there
-#   --force               have files in that folder replaced that no run wrote
-#   --no-check            do not look at the data set or log before it is played
-#   --host-network        run in this machine's own network instead of a namespace of its own
+#   --run-dir FOLDER      folder for logs and results (default logs/runs/<time>); logs/runs/latest points to it
+#   --force               replace files in that folder that were not written by a run
+#   --no-check            do not check the data set or log before playing it
+#   --host-network        run in this machine's network instead of a separate namespace
 #   --help                this text
 #
-# Without --data and --log it runs until Ctrl-C and waits for images. Each process' messages go to <run-dir>/<process>.log (warnings
-# and errors are shown here, too), its configuration with all values in force to <run-dir>/<process>.yaml. At the end it says how
-# many frames got their pose from images, from people, or by prediction only.
-# Exit 0 if all processes ended well; 1 if one did not, or if no frame got a pose; 2 for a wrong option or input.
+# Without --data and --log it waits for images and runs until Ctrl-C. The messages of each process go to <run-dir>/<process>.log
+# (warnings and errors are also shown here), its resolved configuration to <run-dir>/<process>.yaml. At the end it reports how many
+# frames got their pose from images, from people, or by prediction only.
+# Exit code 0 if all processes ended well; 1 if one did not, or if no frame got a pose; 2 for a wrong option or input.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 readonly PROCESSES=(frontend human-tracker optimizer map-recorder)
 readonly READY_DEADLINE_S=30
@@ -43,7 +43,7 @@ while (($# > 0)); do
     --host-network) host_network=yes ;;
     --force) force=yes ;;
     --no-check) check=no ;;
-    --inside) is_inside=yes ;; # for the script's own use: the namespace is made
+    --inside) is_inside=yes ;; # internal: the namespace exists
     --help | -h)
       print_help
       exit 0
@@ -66,23 +66,23 @@ if [[ -n $log ]]; then
   command -v lcm-logplayer > /dev/null || die "lcm-logplayer is missing: 'apt-get install liblcm-bin'"
 fi
 
-# check_input FILE: what is wrong with it is said before anything is started.
+# check_input FILE: reports what is wrong with it before anything is started.
 check_input() {
   local code=0
   [[ $check == yes && -x $AIRDOS_BIN/airdos-check ]] || return 0
   "$AIRDOS_BIN/airdos-check" --quick "$1" > "$run_dir/check.log" 2>&1 || code=$?
   sed -n '/: warning: \|: error: /p' "$run_dir/check.log" >&2
-  if ((code == 1)); then die_usage "'$1' cannot be used (see above; --no-check plays it all the same)"; fi
+  if ((code == 1)); then die_usage "'$1' cannot be used (see above; --no-check plays it anyway)"; fi
   if ((code != 0)); then die_usage "$(tail -n 1 "$run_dir/check.log")"; fi
 }
 
-# refuse_foreign_files: files of these names that no run wrote are the user's.
+# refuse_foreign_files: files with these names that were not written by a run are the user's.
 refuse_foreign_files() {
   local name
   [[ $force == no && ! -e $run_dir/state ]] || return 0
   for name in state check player "${PROCESSES[@]}"; do
     [[ $name == state ]] || name=$name.log
-    [[ ! -e $run_dir/$name ]] || die_usage "--run-dir: $run_dir/$name is not of a run; --force replaces it"
+    [[ ! -e $run_dir/$name ]] || die_usage "--run-dir: $run_dir/$name was not written by a run; --force replaces it"
   done
 }
 
@@ -91,16 +91,16 @@ if [[ $is_inside == no ]]; then
     run_dir=$AIRDOS_RUNS/$(date +%Y%m%d_%H%M%S)_$$
     original_arguments+=(--run-dir "$run_dir")
   fi
-  mkdir -p "$run_dir" || die_usage "--run-dir: '$run_dir' cannot be made"
+  mkdir -p "$run_dir" || die_usage "--run-dir: '$run_dir' cannot be created"
   refuse_foreign_files
-  # Kept open by the processes too, so that it is free only when all of them have ended.
+  # The processes keep it open as well, so it is released only when all of them have ended.
   exec {run_lock}> "$run_dir/.airdos_run_live"
   flock --nonblock "$run_lock" || die_usage "--run-dir: another run_live.sh is writing to $run_dir"
-  if [[ -n $log ]]; then check_input "$log"; fi # the player looks at what it plays itself
+  if [[ -n $log ]]; then check_input "$log"; fi # the player checks its input itself
   mkdir -p "$AIRDOS_RUNS"
   ln -sfn "$(realpath "$run_dir")" "$AIRDOS_RUNS/latest"
   if [[ $host_network == yes ]]; then
-    "$(dirname "$0")/network_setup.sh" --check || die "--host-network: the network is not fit for LCM (see above)"
+    "$AIRDOS_SCRIPTS/network_setup.sh" --check || die "--host-network: the network is not ready for LCM (see above)"
   else
     run_in_new_network "$0" "${original_arguments[@]}" --inside
   fi
@@ -110,15 +110,15 @@ declare -A pids=() exit_codes=()
 stopping=no
 trap 'stopping=yes' INT TERM HUP
 
-# Ctrl-C reaches a sleep as well, and its failure must not end the script before it has stopped the others.
+# Ctrl-C also interrupts sleep, whose failure must not end the script before it has stopped the others.
 pause() { sleep "$1" || true; }
 
-# start NAME PROGRAM ARGUMENTS…: in a session of its own, so that Ctrl-C reaches this script only and the processes are
-# stopped in order; they end with this script even if that is killed.
+# start NAME PROGRAM ARGUMENTS…: in its own session, so that Ctrl-C reaches only this script and the processes are stopped
+# in order; they also end if this script is killed.
 start() {
   local name=$1
   shift
-  : > "$run_dir/$name.log" # here, not by the child below: it must not be asked while it still holds the READY of a run before
+  : > "$run_dir/$name.log" # here rather than in the child, or the READY of an earlier run might be found in it
   setsid setpriv --pdeathsig TERM -- "$@" > "$run_dir/$name.log" 2>&1 < /dev/null &
   pids[$name]=$!
   echo "$name=${pids[$name]}" >> "$run_dir/state"
@@ -132,7 +132,7 @@ collect() {
   exit_codes[$1]=$code
 }
 
-# stop NAME: SIGTERM, and SIGKILL only if it does not end.
+# stop NAME: sends SIGTERM, and SIGKILL only if it does not end.
 stop() {
   local name=$1 deadline=$((SECONDS + STOP_DEADLINE_S))
   [[ -z ${exit_codes[$name]:-} ]] || return 0
@@ -148,7 +148,7 @@ stop() {
   collect "$name"
 }
 
-# show_news: what the processes have newly warned of, or failed at.
+# show_news: shows new warnings and errors of the processes.
 declare -A lines_shown=()
 show_news() {
   local name first last
@@ -158,18 +158,18 @@ show_news() {
     last=$(wc -l < "$run_dir/$name.log")
     ((last >= first)) || continue
     lines_shown[$name]=$last
-    sed -n "$first,$last{/: warning: \\|: error: \\|: nothing on \\|: rejected /p}" "$run_dir/$name.log" >&2
+    sed -n "$first,$last{/: warning: \\|: error: /p}" "$run_dir/$name.log" >&2
   done
 }
 
-# finish [CODE]: sources first, the recorder last, so that it keeps what the others still say. Exit with CODE at least.
+# finish [CODE]: stops sources first and the recorder last, so that it records everything. Exits with at least CODE.
 finish() {
   local name bad=${1:-0}
   for name in player "${PROCESSES[@]}"; do
     if [[ -n ${pids[$name]:-} ]]; then stop "$name"; fi
   done
   show_news
-  sed -n 's/^airdos-optimizer: \(poses: .*\)/\1/p' "$run_dir/optimizer.log" 2> /dev/null | tail -n 1
+  sed -n 's/^[^ ]* airdos-optimizer: info: \(poses: .*\)/\1/p' "$run_dir/optimizer.log" 2> /dev/null | tail -n 1
   for name in "${!exit_codes[@]}"; do
     say "$name: exit code ${exit_codes[$name]}"
     ((exit_codes[$name] == 0)) || bad=1
@@ -179,7 +179,7 @@ finish() {
   exit "$bad"
 }
 
-# What is wrong with the machine, as far as airdos-doctor sees it from this network; silent if nothing is.
+# Reports what airdos-doctor finds wrong with the machine in this network; silent if nothing is.
 consult_doctor() {
   [[ -x $AIRDOS_BIN/airdos-doctor ]] || return 0
   "$AIRDOS_BIN/airdos-doctor" --lcm-url "$url" --run-dir "$run_dir" --round-trip never 2>&1 |
@@ -201,7 +201,7 @@ wait_until_ready() {
   done
 }
 
-# Processor time of all processes so far, in clock ticks.
+# CPU time of all processes so far, in clock ticks.
 ticks() {
   local name sum=0 stat
   for name in "${PROCESSES[@]}"; do
@@ -212,7 +212,7 @@ ticks() {
   echo "$sum"
 }
 
-# Until nobody has worked for IDLE_S: heartbeats cost less than two ticks in half a second, frames more.
+# Waits until no process has worked for IDLE_S: heartbeats cost less than two ticks in half a second, frames more.
 wait_until_idle() {
   local now last quiet_since=$SECONDS deadline=$((SECONDS + DRAIN_DEADLINE_S))
   last=$(ticks)
@@ -225,14 +225,14 @@ wait_until_idle() {
   done
 }
 
-# report_ended: whoever ended is named once; the others go on.
+# report_ended: names each process that has ended once; the others continue.
 report_ended() {
   local name
   for name in "${PROCESSES[@]}"; do
     if [[ -z ${exit_codes[$name]:-} ]] && ! is_running "$name"; then
       collect "$name"
-      say "$name ended with exit code ${exit_codes[$name]}; the others go on. To start it again:"
-      # The recorder finds its unfinished map there and goes on with it.
+      say "$name ended with exit code ${exit_codes[$name]}; the others continue. To restart it:"
+      # The recorder finds its unfinished map there and continues it.
       say "  nsenter -t $$ -n -- $AIRDOS_BIN/airdos-$name --lcm-url '$url' --pace $pace$(
         [[ $name != map-recorder ]] || echo " --set output.directory='$run_dir'"
       )"
@@ -247,7 +247,7 @@ report_ended() {
 } > "$run_dir/state"
 
 arguments=(--lcm-url "$url" --pace "$pace")
-# Each leaves its configuration in the run's folder, as airdos-replay does.
+# Each process writes its configuration to the run's folder, like airdos-replay.
 start frontend "$AIRDOS_BIN/airdos-frontend" "${arguments[@]}" --resolved-config "$run_dir/frontend.yaml"
 start human-tracker "$AIRDOS_BIN/airdos-human-tracker" "${arguments[@]}" --resolved-config "$run_dir/human_tracker.yaml"
 start optimizer "$AIRDOS_BIN/airdos-optimizer" "${arguments[@]}" --resolved-config "$run_dir/optimizer.yaml"

@@ -1,16 +1,16 @@
 #!/bin/bash
-# Looks at what the processes say: Debian's lcm-spy with AirDOS' types and plugins.
+# Shows the processes' messages: Debian's lcm-spy with AirDOS' types and plugins.
 #
 # Usage: launch_scripts/spy.sh [--namespace latest|FOLDER|PID] [--lcm-url URL]
-#   --namespace WHERE  enter the network of run_live.sh: its latest run, the folder of a run, or a process number
-#   --lcm-url URL      where the processes are (default: that of the run, else LCM_DEFAULT_URL, else LCM's own)
+#   --namespace WHERE  enter the network of a run of run_live.sh: the latest one, the one in a folder, or that of a process id
+#   --lcm-url URL      LCM URL of the processes (default: the run's, otherwise LCM_DEFAULT_URL, otherwise LCM's default)
 #   --help             this text
 #
-# Double click CAMERA_LEFT for the image with people, tracks and features, STATUS for the table of processes, any other
+# Double-click CAMERA_LEFT for the image with people, tracks and features, STATUS for the table of processes, or any other
 # channel for its fields.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
-source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 url=${LCM_DEFAULT_URL:-$AIRDOS_DEFAULT_URL}
 url_given=no
@@ -49,7 +49,7 @@ if [[ -n $namespace ]]; then
   enter_network "$pid"
 fi
 
-# first_file NAME PACKAGE FILE…: the first that exists.
+# first_file NAME PACKAGE FILE…: prints the first file that exists.
 first_file() {
   local name=$1 package=$2 file
   shift 2
@@ -62,17 +62,17 @@ first_file() {
   die "$name is missing: install it with 'apt-get install $package'"
 }
 airdos_jar=
-for file in "$AIRDOS_ROOT/build/share/java/airdos.jar" "$(dirname "$0")"/../../java/airdos.jar; do
+for file in "$AIRDOS_ROOT/build/share/java/airdos.jar" "$AIRDOS_ROOT/../java/airdos.jar"; do
   if [[ -e $file ]]; then airdos_jar=$file && break; fi
 done
-[[ -n $airdos_jar ]] || die "airdos.jar is missing: build it with launch_scripts/setup.sh (it needs default-jdk-headless)"
+[[ -n $airdos_jar ]] || die "airdos.jar is missing: install the package airdos-dev, or build it with launch_scripts/setup.sh"
 lcm_jar=$(first_file lcm.jar liblcm-java /usr/share/java/lcm.jar)
 chart_jar=$(first_file jchart2d.jar libjchart2d-java /usr/share/java/jchart2d.jar)
 command -v java > /dev/null || die "java is missing: install it with 'apt-get install default-jre'"
 java_home=$(dirname "$(dirname "$(readlink -f "$(command -v java)")")")
-[[ -e $java_home/lib/libawt_xawt.so ]] || die "this Java opens no windows: install it with 'apt-get install default-jre'"
+[[ -e $java_home/lib/libawt_xawt.so ]] || die "this Java cannot open windows: install one with 'apt-get install default-jre'"
 [[ -n ${DISPLAY:-} ]] || die "no display (DISPLAY is not set)"
-# Java looks for its X server by a local socket first, so it finds it from inside a network namespace, too.
+# Java first looks for the X server on a local socket, so it finds it from inside a network namespace, too.
 export LCM_DEFAULT_URL=$url
 say "$url${namespace:+ in the network of process $pid}"
 exec "${ENTER_NETWORK[@]}" java -Djava.net.preferIPv4Stack=true -Xmx512m \

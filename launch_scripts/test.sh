@@ -1,8 +1,10 @@
 #!/bin/bash
-# Installs what is missing, builds, and runs all tests: the unit, numeric and node tests under the address and
-# undefined-behaviour sanitizers, the fuzz targets (fuzz.sh) for 10 s each, then everything in the normal build.
+# Installs what is missing, looks for mistakes that need no running (lint.sh), builds, and runs all tests: the unit, numeric and node
+# tests under the address and undefined-behaviour sanitizers, the fuzz targets (fuzz.sh) for 10 s each, then everything in the
+# normal build.
 #
-# Usage: launch_scripts/test.sh [--no-sanitizers] [--no-fuzz]
+# Usage: launch_scripts/test.sh [--no-lint] [--no-sanitizers] [--no-fuzz]
+#   --no-lint        without lint.sh
 #   --no-sanitizers  only the normal build, and no fuzz targets
 #   --no-fuzz        no fuzz targets
 #   --help           this text
@@ -14,9 +16,10 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 readonly EXIT_SKIPPED=77
 
-sanitizers=yes fuzz=yes
+lint=yes sanitizers=yes fuzz=yes
 while (($# > 0)); do
   case $1 in
+    --no-lint) lint=no ;;
     --no-sanitizers) sanitizers=no fuzz=no ;;
     --no-fuzz) fuzz=no ;;
     --help | -h)
@@ -70,25 +73,31 @@ build_sanitized() {
     -DAIRDOS_SANITIZE=ON -DAIRDOS_BUILD_JAVA=OFF -DCMAKE_BUILD_TYPE=Sanitize "-DCMAKE_CXX_FLAGS_SANITIZE=-O1 -g1"
 }
 
-if [[ $fuzz == yes ]]; then install_packages "${AIRDOS_TEST_PACKAGES[@]}"; else install_packages; fi
-failures=0 sanitized='' skipped_fuzzers=no
+further=()
+if [[ $fuzz == yes ]]; then further+=("${AIRDOS_TEST_PACKAGES[@]}"); fi
+if [[ $lint == yes ]]; then further+=("${AIRDOS_LINT_PACKAGES[@]}"); fi
+install_packages "${further[@]}"
+failures=0 sanitized='' skipped_fuzzers=no lint_failures=0 sanitized_failures=0
 
+if [[ $lint == yes ]]; then "$AIRDOS_ROOT/launch_scripts/lint.sh" || lint_failures=1; fi
+
+if ((lint_failures > 0)); then say "lint.sh FAILED (see above); now the tests"; fi
 if [[ $sanitizers == yes ]]; then
   build_sanitized
   say "tests under sanitizers"
   # On glibc 2.36 the leak checker of GCC 12 may follow a block of thread-local storage that it misread, and crash.
   export LSAN_OPTIONS=intercept_tls_get_addr=0
-  run_tests "$sanitized" -L "^(${AIRDOS_SANITIZED_TIERS// /|})\$" || failures=1
+  run_tests "$sanitized" -L "^(${AIRDOS_SANITIZED_TIERS// /|})\$" || sanitized_failures=1
 fi
 
-if [[ $fuzz == yes ]]; then "$AIRDOS_ROOT/launch_scripts/fuzz.sh" --with-tests --seconds 10 || failures=1; fi
+if [[ $fuzz == yes ]]; then "$AIRDOS_ROOT/launch_scripts/fuzz.sh" --with-tests --seconds 10 || sanitized_failures=1; fi
 if [[ $skipped_fuzzers == yes ]]; then say "SKIPPED: the fuzz targets (no clang)"; fi
 
 configure_and_build "$AIRDOS_ROOT/build" all -DCMAKE_BUILD_TYPE=Release
-sanitized_failures=$failures
 if ((sanitized_failures > 0)); then say "tests or fuzz targets FAILED under the sanitizers (see above); now the others"; fi
 # The system tests wait more than they compute.
 run_tests "$AIRDOS_ROOT/build" -j "$(($(nproc) + 2))" || failures=1
 # Else the last line might be that all tests passed.
+if ((lint_failures > 0)); then say "FAILED: lint.sh (see above)"; fi
 if ((sanitized_failures > 0)); then say "FAILED: tests or fuzz targets under the sanitizers (see above)"; fi
-exit "$failures"
+exit "$((failures || lint_failures || sanitized_failures))"

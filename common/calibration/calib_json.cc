@@ -27,7 +27,7 @@ std::pair<std::string, std::string> PlaceOf(const std::string& text, std::size_t
   return {std::to_string(line), "column " + std::to_string(column)};
 }
 
-/// The likely mistake at the byte where JSON ends.
+/// The likely mistake at the byte where parsing stopped.
 std::string ExplainJson(const std::string& text, std::size_t byte) {
   if (byte >= text.size()) return "the file ends before its last brace";
   const std::size_t last =
@@ -55,8 +55,9 @@ std::string ExplainJson(const std::string& text, std::size_t byte) {
   }
   if (static_cast<unsigned char>(text[byte]) >= 0xFE) return "this is UTF-16, not UTF-8";
   const unsigned char c = static_cast<unsigned char>(text[byte]);
-  return c < 0x20 || c >= 0x7f ? "is no JSON here"
-                               : std::string("is no JSON at the character '") + text[byte] + "'";
+  return c < 0x20 || c >= 0x7f
+             ? "this is not JSON"
+             : std::string("this is not JSON at the character '") + text[byte] + "'";
 }
 
 nlohmann::json ParseJson(const std::string& path) {
@@ -64,14 +65,14 @@ nlohmann::json ParseJson(const std::string& path) {
   try {
     nlohmann::json json = nlohmann::json::parse(text);
     if (!json.is_object()) {
-      throw InputError(path + ": is no JSON object; wanted is " + kCalibJsonForm);
+      throw InputError(path + ": is not a JSON object; expected is " + kCalibJsonForm);
     }
     return json;
   } catch (const nlohmann::json::parse_error& error) {
     const std::size_t byte = error.byte > 0 ? error.byte - 1 : 0;
     const auto [line, column] = PlaceOf(text, byte);
     throw InputError(path + ":" + line + ": " + column + ": " + ExplainJson(text, byte) +
-                     "; wanted is " + kCalibJsonForm);
+                     "; expected is " + kCalibJsonForm);
   } catch (const nlohmann::json::exception&) {
     throw InputError(path + ": holds a number that is too large");
   }
@@ -92,7 +93,7 @@ std::string Plain(const std::string& key) {
   return plain;
 }
 
-/// The key that another one is written for, or empty.
+/// The key that a misspelt key stands for, or empty.
 std::string MeantBy(const std::string& key) {
   static const std::map<std::string, std::string> kOthers = {{"baseline", "baseline_m"},
                                                              {"baselinemm", "baseline_m"},
@@ -132,11 +133,11 @@ std::string MeantBy(const std::string& key) {
   return other == kOthers.end() ? "" : other->second;
 }
 
-/// "; did you mean 'baseline_m' by 'baseline'?" where a key is there that looks like it.
+/// "; did you mean 'baseline_m' by 'baseline'?" if there is a similar key; otherwise empty.
 std::string DidYouMean(const nlohmann::json& json, const std::string& key) {
   for (const auto& item : json.items()) {
     if (item.key() != key && MeantBy(item.key()) == key) {
-      return "; '" + item.key() + "' is there: it is written '" + key + "'";
+      return "; '" + item.key() + "' is there: it is spelt '" + key + "'";
     }
   }
   return "";
@@ -146,10 +147,10 @@ double ReadNumber(const nlohmann::json& json, const std::string& path, const std
   if (!json.contains(key)) {
     const std::string meant = DidYouMean(json, key);
     throw InputError(path + ": key '" + key + "' is missing" +
-                     (meant.empty() ? std::string("; wanted is ") + kCalibJsonForm : meant));
+                     (meant.empty() ? std::string("; expected is ") + kCalibJsonForm : meant));
   }
   if (!json[key].is_number()) {
-    // Its value may be nested more deeply than dump() bears.
+    // The value may be nested too deeply for dump().
     throw InputError(path + ": key '" + key + "' with a value of type " + json[key].type_name() +
                      ": must be a number" + (json[key].is_string() ? ", without quotes" : ""));
   }
@@ -195,8 +196,9 @@ StereoCamera ReadCalibJson(const std::string& path, std::pair<int, int> size) {
   camera.cy_px = ReadNumber(json, path, "cy");
   camera.baseline_m = ReadNumber(json, path, "baseline_m");
   if (!camera.IsValid()) {
-    throw InputError(path + ": no pinhole pair for images of " + std::to_string(camera.width) +
-                     " x " + std::to_string(camera.height) + " px: " + WhyNoCamera(camera));
+    throw InputError(path + ": not a pinhole stereo camera for images of " +
+                     std::to_string(camera.width) + " x " + std::to_string(camera.height) +
+                     " px: " + WhyNoCamera(camera));
   }
   return camera;
 }

@@ -8,12 +8,12 @@
 
 namespace airdos {
 
-/// Reads calib.json: fx fy cx cy (px), baseline_m, and optionally width and height (px), for images
-/// of `size` (width, height in px). Throws InputError naming file, line and column where it is no
-/// JSON, or the key, and the likely cause where the numbers are no camera.
+/// Reads calib.json: fx fy cx cy (px), baseline_m and, optionally, width and height (px), for
+/// images of `size` (width, height in px). Throws InputError naming file, line and column if it is
+/// not JSON, or the key and the likely cause if the numbers are not those of a camera.
 StereoCamera ReadCalibJson(const std::string& path, std::pair<int, int> size);
 
-/// How a calib.json is written, for messages.
+/// The format of a calib.json, for messages.
 inline constexpr char kCalibJsonForm[] =
     R"({"fx": .., "fy": .., "cx": .., "cy": .., "baseline_m": ..} (px, m))";
 

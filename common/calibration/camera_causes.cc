@@ -1,21 +1,18 @@
 #include "common/calibration/camera_causes.h"
 
 #include <cmath>
-#include <cstdio>
 #include <utility>
+
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
 
 bool IsPlausibleBaseline(double baseline_m) { return baseline_m >= 0.02 && baseline_m <= 2; }
 
-std::string Brief(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.4g", value);
-  return text;
-}
+std::string Brief(double value) { return Format("%.4g", value); }
 
-/// Size of the images for which the principal point would be the middle, by the camera's.
+/// Size of the images in which the camera's principal point would be central.
 std::pair<double, double> CalibratedSize(const StereoCamera& camera) {
   return {2 * camera.cx_px / camera.width, 2 * camera.cy_px / camera.height};
 }
@@ -28,7 +25,7 @@ std::string WhyNoPrincipalPoint(const StereoCamera& camera) {
   if (IsPrincipalPointSwapped(camera)) return point + "; cx and cy are exchanged";
   const std::optional<double> factor = ResolutionFactor(camera);
   if (factor) {
-    return point + "; it is that of images " + TimesAsLarge(*factor) + ": divide fx, fy, cx and " +
+    return point + "; it belongs to images " + TimesAsLarge(*factor) + ": divide fx, fy, cx and " +
            "cy by " + Brief(*factor);
   }
   return point;
@@ -57,7 +54,7 @@ std::optional<double> ResolutionFactor(const StereoCamera& camera) {
   if (!(by_width > 0.02) || !(by_height > 0.02) || by_width > 50 || by_height > 50) {
     return std::nullopt;
   }
-  // Lenses are seldom that well centred, but a tenth of difference is no other resolution.
+  // Lenses are rarely centred that well, but a difference of 10 % does not mean another resolution.
   constexpr double kSameFactor = 0.1;
   const double factor = std::sqrt(by_width * by_height);
   if (std::abs(std::log(by_width / by_height)) > kSameFactor) return std::nullopt;
@@ -66,7 +63,7 @@ std::optional<double> ResolutionFactor(const StereoCamera& camera) {
 }
 
 bool IsPrincipalPointSwapped(const StereoCamera& camera) {
-  constexpr double kNear = 0.1;  // of the size
+  constexpr double kNear = 0.1;  // relative to the size
   const auto is_middle = [](double value_px, int size) {
     return std::abs(value_px / size - 0.5) < kNear;
   };

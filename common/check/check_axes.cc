@@ -9,9 +9,9 @@
 namespace airdos {
 namespace {
 
-constexpr std::size_t kMinFrames = 8;    // fewer poses say nothing of axes
-constexpr double kMinPath_m = 0.3;       // a shorter path says nothing of scale
-constexpr double kPlausibleScale = 1.3;  // either way: short odometry is good to a few per cent
+constexpr std::size_t kMinFrames = 8;    // fewer poses do not determine the axes
+constexpr double kMinPath_m = 0.3;       // a shorter path does not determine the scale
+constexpr double kPlausibleScale = 1.3;  // either way; short odometry is accurate to a few %
 
 std::string NameOf(TrajectoryAxes axes) {
   switch (axes) {
@@ -25,7 +25,7 @@ std::string NameOf(TrajectoryAxes axes) {
   return "unknown";
 }
 
-/// First of the consecutive frames, all with ground truth, in which the camera travels farthest.
+/// First of the consecutive frames, all with ground truth, over which the camera travels farthest.
 std::optional<std::size_t> FarthestWindow(const std::vector<std::optional<Se3>>& poses,
                                           std::size_t size) {
   if (size == 0) return std::nullopt;
@@ -49,12 +49,11 @@ TrajectoryPose ToTrajectoryPose(const Se3& pose, std::int64_t utime) {
   return {1e-6 * static_cast<double>(utime), pose.rotation.toRotationMatrix(), pose.translation};
 }
 
-/// Odometry beside the ground truth over the given frames; empty where the pictures do not allow
-/// it.
+/// Odometry and ground truth over the given frames; empty if the pictures do not allow it.
 MatchedTrajectories RunOdometry(const CheckedInput& input, const std::vector<std::size_t>& frames) {
-  FindingList ignored;  // the check of the pictures has said it
+  FindingList ignored;  // the check of the pictures has reported them
   VisualOdometry odometry{VisualOdometryOptions()};
-  const cv::Mat mask_margin = cv::Mat::ones(17, 17, CV_8UC1);  // px, as the front end has it
+  const cv::Mat mask_margin = cv::Mat::ones(17, 17, CV_8UC1);  // px, as in the frontend
   MatchedTrajectories matched;
   const cv::Size size(input.camera().width, input.camera().height);
   std::size_t i = 0;
@@ -108,7 +107,7 @@ void CompareAxes(const CheckedInput& input, const MatchedTrajectories& matched,
   }
 }
 
-/// Length of the path in strides of ten frames, m: the noise of single steps would make it longer.
+/// Length of the path in steps of ten frames, m; the noise of single steps would make it longer.
 double Travel(const std::vector<TrajectoryPose>& poses) {
   constexpr std::size_t kStride = 10;
   const std::size_t stride = std::min(kStride, poses.size() - 1);

@@ -5,9 +5,9 @@
 
 namespace airdos {
 
-/// Compares the ground truth with a short visual odometry over the `num_frames` consecutive frames
-/// in which it moves most: whether the axes are those that the layout says, right- or left-handed,
-/// and whether the lengths agree.
+/// Compares the ground truth with short visual odometry over the `num_frames` consecutive frames
+/// with the most motion: whether its axes are those of the layout, whether they are right- or
+/// left-handed, and whether the lengths agree.
 void CheckGroundTruth(const CheckedInput& input, std::size_t num_frames, FindingList* findings);
 
 }  // namespace airdos

@@ -26,15 +26,15 @@ void CheckBaseline(const StereoCamera& camera, const std::string& where, Finding
   }
 }
 
-/// What a focal length is instead of px, "; ..." or empty.
+/// What a focal length is that is not in px: "; ...", or empty.
 std::string ExplainFocalLength(const StereoCamera& camera) {
   const double as_px = camera.fx_px * camera.width;
   const bool is_normalised = camera.fx_px > 0.3 && camera.fx_px < 4;
   if (is_normalised && camera.cx_px < 1) {
     return "; divided by the image's width? In px it would be " + Brief(as_px);
   }
-  if (camera.fx_px < 0.1) return "; in m, as of a lens? It is wanted in px";
-  if (camera.fx_px < 50) return "; in mm, as of a lens? It is wanted in px";
+  if (camera.fx_px < 0.1) return "; in m, as of a lens? It is expected in px";
+  if (camera.fx_px < 50) return "; in mm, as of a lens? It is expected in px";
   return "; is it in px of these images?";
 }
 
@@ -54,14 +54,14 @@ void CheckFocalLength(const StereoCamera& camera, const std::string& where, Find
   }
 }
 
-/// False where the principal point is that of images of another size.
+/// False if the principal point belongs to images of another size.
 bool CheckResolution(const StereoCamera& camera, const std::string& where, FindingList* findings) {
   const std::optional<double> factor = ResolutionFactor(camera);
   if (!factor) return true;
   const std::string what = "the principal point " + Brief(camera.cx_px) + " " +
-                           Brief(camera.cy_px) + " is the middle of images " +
+                           Brief(camera.cy_px) + " is the centre of images " +
                            TimesAsLarge(*factor) + " as these of " + SizeOf(camera);
-  // Between a tenth and a fifth it may be a lens that is badly centred.
+  // Between 10 and 20 %, the lens may just be badly centred.
   if (*factor < 0.8 || *factor > 1.25) {
     findings->Fail("camera.resolution", where,
                    what + ": calibrated for those; divide fx, fy, cx and cy by " + Brief(*factor));
@@ -81,20 +81,20 @@ void CheckPrincipalPoint(const StereoCamera& camera, const std::string& where,
     return;
   }
   if (!CheckResolution(camera, where, findings)) return;
-  constexpr double kFarOff = 0.15;  // of the size
+  constexpr double kFarOff = 0.15;  // relative to the size
   const double off_x = camera.cx_px / camera.width - 0.5;
   const double off_y = camera.cy_px / camera.height - 0.5;
   if (std::abs(off_x) <= kFarOff && std::abs(off_y) <= kFarOff) return;
   std::string cause;
   if (camera.cx_px <= 1 && camera.cy_px <= 1) {
-    cause = "; divided by the image's size? It is wanted in px";
+    cause = "; divided by the image's size? It is expected in px";
   } else if (std::abs(off_x) <= kFarOff || std::abs(off_y) <= kFarOff) {
     cause =
-        "; if the images were cropped, what was cut off at the left and top is to be "
+        "; if the images were cropped, what was cut off at the left and top must be "
         "subtracted from it";
   }
   findings->Warn("camera.principal_point", where,
-                 point + " lies far from the middle of images of " + SizeOf(camera) + cause);
+                 point + " is far from the centre of images of " + SizeOf(camera) + cause);
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 
 namespace airdos {
 
-/// Whether numbers can be those of a stereo pair in px and m, for images of this size: focal length
-/// 0.3 to 4 times the width, principal point near the middle, baseline 2 cm to 2 m. What they are
-/// instead is named where it is known: another resolution, cx and cy exchanged, mm, fx * baseline.
+/// Whether the numbers can be those of a stereo camera in px and m for images of this size: focal
+/// length 0.3 to 4 times the width, principal point near the centre, baseline 2 cm to 2 m. Common
+/// mistakes are named: another resolution, cx and cy exchanged, mm, fx * baseline.
 void CheckCamera(const StereoCamera& camera, const std::string& where, FindingList* findings);
 
 }  // namespace airdos

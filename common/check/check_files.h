@@ -8,14 +8,15 @@
 
 namespace airdos {
 
-/// What the reader assumed of a folder (StereoSequence::notes()), as warnings of this kind.
+/// What the reader assumed about a folder (StereoSequence::notes()), as warnings of this kind.
 inline constexpr char kAssumedKind[] = "folder.assumed";
 void ReportNotes(const StereoSequence& sequence, FindingList* findings);
 
-/// What lies in a folder like input and is not read (folder_survey.h), kind "folder.unread".
+/// Reports files in a folder that look like input but are not read (folder_survey.h), with kind
+/// "folder.unread".
 void ReportUnreadFiles(const std::string& folder, FindingList* findings);
 
-/// The order of joints that keypoints are read in.
+/// Reports the joint order with which keypoints are read.
 void ReportLayout(const StereoSequence& sequence, FindingList* findings);
 
 }  // namespace airdos

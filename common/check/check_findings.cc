@@ -1,9 +1,9 @@
 #include "common/check/check_findings.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "common/util/format.h"
+#include "common/util/text_file.h"
 
 namespace airdos {
 
@@ -18,19 +18,6 @@ const char* NameOf(Severity severity) {
   }
   return "error";
 }
-
-namespace {
-
-/// Findings quote files: no control character of them may reach a terminal.
-std::string Printable(std::string text) {
-  for (char& c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 0x20 || code == 0x7f) c = '?';
-  }
-  return text;
-}
-
-}  // namespace
 
 void FindingList::Add(Severity severity, const std::string& kind, const std::string& where,
                       const std::string& what) {
@@ -79,25 +66,8 @@ nlohmann::json FindingList::ToJson(const std::string& input) const {
   return json;
 }
 
-std::string Brief(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.3g", value);
-  return text;
-}
+std::string Brief(double value) { return Format("%.3g", value); }
 
-std::string Percent(double fraction) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.0f %%", 100 * fraction);
-  return text;
-}
-
-double Quantile(std::vector<double> values, double fraction) {
-  if (values.empty()) return 0;
-  const double rank = std::ceil(fraction * static_cast<double>(values.size())) - 1;
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(std::clamp(
-                                        rank, 0.0, static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
-}
+std::string Percent(double fraction) { return Format("%.0f %%", 100 * fraction); }
 
 }  // namespace airdos

@@ -11,21 +11,23 @@
 
 namespace airdos {
 
-/// kNote: what was found out. kWarning: it will run, but look. kError: the result would be wrong.
+/// kNote: for information. kWarning: it will run, but needs attention. kError: the result would be
+/// wrong.
 enum class Severity { kNote, kWarning, kError };
 const char* NameOf(Severity severity);
 
-/// One thing that a check of an input found.
+/// One finding of a check of the input.
 struct Finding {
   Severity severity = Severity::kNote;
-  std::string kind;   ///< "images.swapped": stays the same from version to version
+  std::string kind;   ///< such as "images.swapped"; stable across versions
   std::string where;  ///< file, file:line, or log and image number
-  std::string what;   ///< in words
+  std::string what;   ///< the message
 };
 
-/// The findings of one input in the order in which they were made. Of each kind the first few are
-/// kept and the others counted, so that a mistake in every file does not hide the other mistakes.
-/// What was said before, word for word, is not said again: two checks may meet the same mistake.
+/// The findings about one input, in the order in which they were made. Of each kind, the first few
+/// are kept and the others counted, so that a mistake in every file does not hide other mistakes. A
+/// finding that repeats an earlier one word for word is dropped: two checks may notice the same
+/// mistake.
 class FindingList {
  public:
   static constexpr int kMaxPerKind = 3;
@@ -41,14 +43,14 @@ class FindingList {
   void Fail(const std::string& kind, const std::string& where, const std::string& what) {
     Add(Severity::kError, kind, where, what);
   }
-  /// An InputError's text, "where: what".
+  /// Adds an error from an InputError's text, "where: what".
   void FailFrom(const std::string& kind, const std::string& text);
 
   const std::vector<Finding>& findings() const { return findings_; }
   int count(Severity severity) const;
   bool has_errors() const { return count(Severity::kError) > 0; }
 
-  /// "WHERE: error: WHAT [kind]", a line each, then how many there are.
+  /// Prints "WHERE: error: WHAT [kind]", one line each, then the totals.
   void Print(const std::string& input, std::ostream* out) const;
   nlohmann::json ToJson(const std::string& input) const;
 
@@ -59,13 +61,10 @@ class FindingList {
   std::map<Severity, int> num_of_severity_;
 };
 
-/// A number with few digits, for texts.
+/// A number with few digits, for messages.
 std::string Brief(double value);
-/// "12 %".
+/// A percentage, such as "12 %".
 std::string Percent(double fraction);
-
-/// The value below which `fraction` (0..1) of the values lie, nearest rank; 0 for no value.
-double Quantile(std::vector<double> values, double fraction);
 
 }  // namespace airdos
 

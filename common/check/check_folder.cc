@@ -32,7 +32,7 @@ std::string FirstOf(const std::string& folder, const std::vector<std::string>& n
   return folder;
 }
 
-/// People as a file has them. What the reader refuses is a finding.
+/// Reads the people in a file. What the reader refuses becomes a finding.
 CheckedPeople ReadPeople(const std::string& path, FindingList* findings) {
   CheckedPeople result;
   result.where = path;
@@ -53,7 +53,7 @@ CheckedPeople ReadPeople(const std::string& path, FindingList* findings) {
   return result;
 }
 
-/// Throws nothing: what `read` throws is a finding.
+/// Does not throw: what `read` throws becomes a finding.
 template <class Read>
 auto ReadOrSay(const std::string& kind, const std::string& path, FindingList* findings, Read read)
     -> decltype(read()) {
@@ -61,13 +61,14 @@ auto ReadOrSay(const std::string& kind, const std::string& path, FindingList* fi
     return read();
   } catch (const InputError& error) {
     findings->FailFrom(kind, error.what());
-  } catch (const cv::Exception&) {  // a header that promises more pixels than OpenCV wants to hold
+  } catch (const cv::Exception&) {  // a header that claims more pixels than OpenCV accepts
     findings->Fail(kind, path, "cannot be decoded as an image");
   }
   return {};
 }
 
-/// A picture in grey as the player hands it on; empty, and a finding, where it cannot be read.
+/// Reads a picture in grey, as the player passes it on; if it cannot be read, adds a finding and
+/// returns an empty one.
 cv::Mat ReadPicture(const std::string& path, const SixteenBitRange& range, FindingList* findings) {
   return ReadOrSay("images.file", path, findings, [&] {
     return DecodePicture(ReadBytes(path), path, PictureColor::kGrey, range).pixels;
@@ -116,7 +117,7 @@ class FolderInput : public CheckedInput {
       pictures.left = ReadPicture(files.left_image, range_, findings);
       pictures.right = ReadPicture(files.right_image, range_, findings);
       if (fs::exists(files.person_mask)) pictures.mask = ReadMask(files.person_mask, findings);
-      FindingList ignored;  // CheckKeypoints() has said it
+      FindingList ignored;  // CheckKeypoints() has reported them
       pictures.people_left = ReadPeople(files.keypoints_left, &ignored);
       result.push_back(std::move(pictures));
     }
@@ -125,7 +126,7 @@ class FolderInput : public CheckedInput {
 
   std::vector<StereoPeople> LoadPeople(const std::vector<std::size_t>& frames) const override {
     std::vector<StereoPeople> result;
-    FindingList ignored;  // CheckKeypoints() has said it
+    FindingList ignored;  // CheckKeypoints() has reported them
     for (const std::size_t frame : frames) {
       const FrameFiles files = sequence_->files(frame);
       result.push_back({ReadPeople(files.keypoints_left, &ignored),
@@ -135,7 +136,7 @@ class FolderInput : public CheckedInput {
   }
 
   const StereoSequence& sequence() const { return *sequence_; }
-  /// Of 16-bit pictures, before they are loaded.
+  /// Sets the range of 16-bit pictures; call it before loading them.
   void set_range(const SixteenBitRange& range) { range_ = range; }
 
  private:
@@ -146,7 +147,7 @@ class FolderInput : public CheckedInput {
   std::vector<std::optional<Se3>> ground_truth_;
 };
 
-/// Files of people come one an image, or not at all.
+/// There must be one file of people per image, or none at all.
 void CheckCounts(const StereoSequence& sequence, FindingList* findings) {
   struct Kind {
     const char* name;
@@ -177,10 +178,10 @@ void CheckCounts(const StereoSequence& sequence, FindingList* findings) {
                               std::to_string(sequence.num_frames()) + " images have " + kind.name;
     if (num_files == 0 && kind.path == &FrameFiles::person_mask &&
         !ListOtherMaskFiles(folder).empty()) {
-      continue;  // CheckMaskFiles() says it
+      continue;  // CheckMaskFiles() reports it
     }
     if (num_files == 0) {
-      findings->Note(std::string(kind.name) + ".count", folder, "none: nobody will be known");
+      findings->Note(std::string(kind.name) + ".count", folder, "none: there will be no people");
     } else if (num_used == 0) {
       findings->Fail(std::string(kind.name) + ".count", folder,
                      "none of its files has the name of an image");
@@ -194,11 +195,11 @@ void CheckCounts(const StereoSequence& sequence, FindingList* findings) {
   }
 }
 
-/// Files of other kinds in the place of masks, and what the masks' headers say, all of them.
+/// Checks for files of other formats in place of masks, and the headers of all masks.
 void CheckMaskFiles(const StereoSequence& sequence, FindingList* findings) {
   const StereoCamera& camera = sequence.camera();
   const std::string folder = fs::path(sequence.files(0).person_mask).parent_path().string();
-  std::set<std::string> unmasked;  // images without a mask of the kind that is read
+  std::set<std::string> unmasked;  // images without a mask in the format that is read
   for (std::size_t i = 0; i < sequence.num_frames(); ++i) {
     const std::string path = sequence.files(i).person_mask;
     if (!fs::exists(path)) {
@@ -225,12 +226,12 @@ void CheckMaskFiles(const StereoSequence& sequence, FindingList* findings) {
   });
   const std::string ending = fs::path(others[0]).extension().string();
   const bool all_other = unmasked.size() == sequence.num_frames();
-  findings->Add(are_needed || all_other ? Severity::kError : Severity::kWarning,
-                "masks.other_files", folder,
-                "holds " + std::to_string(others.size()) + " files that are no .png (" + others[0] +
-                    (others.size() > 1 ? " ..." : "") + "), and masks are read from .png only; " +
-                    (IsJpegName(ending) ? "JPEG smears the numbers of masks: " : "") +
-                    "save them as PNG, 0 for the background, or move them away");
+  findings->Add(
+      are_needed || all_other ? Severity::kError : Severity::kWarning, "masks.other_files", folder,
+      "holds " + std::to_string(others.size()) + " files that are not .png (" + others[0] +
+          (others.size() > 1 ? " ..." : "") + "), and masks are read from .png only; " +
+          (IsJpegName(ending) ? "JPEG blurs the values of masks: " : "") +
+          "save them as PNG, 0 for the background, or move them away");
 }
 
 void CheckCompression(const CheckedInput& input, const StereoSequence& sequence,
@@ -261,7 +262,7 @@ void CheckKeypoints(const StereoSequence& sequence, const CheckOptions& options,
   }
 }
 
-/// The headers of all images, and the range of 16-bit ones.
+/// Checks the headers of all images and determines the range of 16-bit ones.
 void CheckImages(FolderInput* input, FindingList* findings) {
   const std::vector<SurveyedImage> images = SurveyImages(input->sequence());
   const bool has_sixteen_bits = std::any_of(
@@ -285,7 +286,7 @@ void CheckFolder(const std::string& folder, const CheckOptions& options, Finding
   } catch (const InputError& error) {
     if (!is_sequence) throw;
     findings->FailFrom("folder", error.what());
-    ReportUnreadFiles(folder, findings);  // they may be the cause
+    ReportUnreadFiles(folder, findings);  // these may be the cause
     return;
   }
   ReportNotes(*sequence, findings);

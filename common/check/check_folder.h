@@ -7,9 +7,9 @@
 
 namespace airdos {
 
-/// Checks a folder of a recorded sequence (stereo_sequence.h), with the readers that the player
-/// uses: what they refuse is an error that names file and line, and ends the check. Throws
-/// InputError only where the folder is none or has no known layout.
+/// Checks the folder of a recorded sequence (stereo_sequence.h), using the same readers as the
+/// player: what they refuse is an error that names file and line, and ends the check. Throws
+/// InputError only if the folder does not exist or has no known layout.
 void CheckFolder(const std::string& folder, const CheckOptions& options, FindingList* findings);
 
 }  // namespace airdos

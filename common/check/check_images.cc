@@ -6,7 +6,7 @@
 namespace airdos {
 namespace {
 
-/// Of files that have something in common.
+/// Files that have something in common.
 struct Group {
   int num = 0;
   std::string first;
@@ -35,7 +35,7 @@ void ReportOrientation(const Groups& orientations, std::size_t num_images, Findi
     if (wish == OrientationText(1)) continue;
     findings->Note("images.orientation", group.first,
                    "EXIF data want " + OfAll(group, num_images) + " " + wish +
-                       ": ignored, pixels are taken as they are stored");
+                       ": ignored, pixels are used as stored");
   }
 }
 
@@ -47,7 +47,7 @@ void ReportKinds(const Groups& kinds, std::size_t num_images,
       findings->Note("images.bits", group.first, RangeText(*range));
     }
     if (kind.find("1-bit") == 0 || kind.find("2-bit") == 0 || kind.find("4-bit") == 0) {
-      findings->Warn("images.bits", group.first, text + ": too few greys for corners");
+      findings->Warn("images.bits", group.first, text + ": too few grey levels for corners");
     } else if (kind.find("alpha") != std::string::npos || kind.find("RGBA") != std::string::npos) {
       findings->Note("images.alpha", group.first, text + ": the alpha channel is not used");
     }
@@ -59,7 +59,7 @@ void ReportKinds(const Groups& kinds, std::size_t num_images,
             group.first + ")";
   }
   findings->Warn("images.kinds", kinds.begin()->second.first,
-                 "the images are of different kinds: " + list);
+                 "the images have different formats: " + list);
 }
 
 }  // namespace

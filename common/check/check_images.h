@@ -9,9 +9,10 @@
 
 namespace airdos {
 
-/// What the headers of all images say (SurveyImages()): files that cannot be used or are cut short,
-/// sizes that are not the camera's, kinds that differ from file to file; EXIF's wishes, bits and
-/// channels that are read in a way that should be known. `range`: of 16-bit images.
+/// Checks the headers of all images (SurveyImages()): files that are unusable or truncated, sizes
+/// that differ from the camera's, formats that differ from file to file, and EXIF orientations, bit
+/// depths and channels that are interpreted in a way that the user should know. `range` is that of
+/// 16-bit images.
 void CheckImageFiles(const std::vector<SurveyedImage>& images, const StereoCamera& camera,
                      const std::optional<SixteenBitRange>& range, FindingList* findings);
 

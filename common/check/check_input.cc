@@ -29,7 +29,7 @@ std::vector<std::size_t> SampleEvenly(std::size_t size, std::size_t count) {
 }
 
 std::vector<std::size_t> SampleOfPictures(std::size_t num_frames, const CheckOptions& options) {
-  // At its ends a recording often stands still, and what is wrong in time cannot be seen.
+  // A recording often stands still at its ends, which hides errors of the times.
   if (options.is_quick() && num_frames > 3) return {num_frames / 3, 2 * num_frames / 3};
   return SampleEvenly(num_frames, options.all ? num_frames : options.max_frames);
 }
@@ -48,7 +48,7 @@ void CheckPictures(const CheckedInput& input, const CheckOptions& options, Stere
                    FindingList* findings) {
   MaskCheck masks(input.camera());
   const std::vector<std::size_t> sample = SampleOfPictures(input.utimes().size(), options);
-  // In portions: a log is read once for each, and pictures are large.
+  // In batches: a log is read once per batch, and pictures are large.
   constexpr std::size_t kPortion = 50;
   for (std::size_t first = 0; first < sample.size(); first += kPortion) {
     const std::size_t end = std::min(first + kPortion, sample.size());
@@ -67,7 +67,7 @@ void CheckPictures(const CheckedInput& input, const CheckOptions& options, Stere
     findings->Note("frames.looked_at", input.name(),
                    "pictures of " + std::to_string(sample.size()) + " of " +
                        std::to_string(input.utimes().size()) +
-                       " frames were looked at (--all looks at all)");
+                       " frames were checked (--all checks all)");
   }
 }
 

@@ -10,12 +10,12 @@
 
 namespace airdos {
 
-/// The quality (1..100) with which libjpeg would have written such a file, from the quantization of
-/// its brightness (ITU T.81, annex K.1; the scale is libjpeg's). Nothing where it is no JPEG file
-/// or holds no such table of 8 bits.
+/// The quality setting (1..100) at which libjpeg would have produced the file, from its luminance
+/// quantization table (ITU T.81, annex K.1; the scale is libjpeg's). Nothing if it is not a JPEG
+/// file or has no such 8-bit table.
 std::optional<int> JpegQuality(const std::vector<std::uint8_t>& file);
 
-/// Says how well images are compressed: below 70 corners suffer.
+/// Reports how strongly the images are compressed: below quality 70, corners suffer.
 class JpegCheck {
  public:
   void Add(const std::vector<std::uint8_t>& file);

@@ -5,17 +5,19 @@
 #include <limits>
 #include <optional>
 
+#include "common/util/quantile.h"
+
 namespace airdos {
 namespace {
 
 constexpr double kMinConfidence = 0.2;
-constexpr int kMinJoints = 6;           // seen, of somebody whose shape says something
-constexpr std::size_t kMinPairs = 10;   // fewer say nothing
-constexpr std::size_t kMinPeople = 15;  // of each camera, for the comparison of sizes
+constexpr int kMinJoints = 6;           // visible, for a person's shape to be informative
+constexpr std::size_t kMinPairs = 10;   // fewer are not significant
+constexpr std::size_t kMinPeople = 15;  // per camera, to compare sizes
 
 bool IsSeen(const BodyKeypoint& joint) { return joint.confidence > kMinConfidence; }
 
-/// Root mean square distance (px) of the seen joints from their middle; nothing for too few.
+/// RMS distance (px) of the visible joints from their mean; nothing if there are too few.
 std::optional<double> SizeOf(const BodyKeypoints& person) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double squares = 0;
@@ -30,9 +32,9 @@ std::optional<double> SizeOf(const BodyKeypoints& person) {
   return std::sqrt(std::max(1.0, squares / num - (sum / num).squaredNorm()));
 }
 
-/// Two people as one seen twice.
+/// A pair of detections as views of the same person.
 struct Pairing {
-  double cost = std::numeric_limits<double>::infinity();  // of their size
+  double cost = std::numeric_limits<double>::infinity();  // relative to their size
   double disparity_px = 0;
   double row_step_px = 0;
 };
@@ -54,7 +56,7 @@ Pairing Compare(const BodyKeypoints& left, const BodyKeypoints& right, double si
     deviation_px += std::min(
         0.5 * size_px, std::hypot(du_px[i] - pairing.disparity_px, dv_px[i] - pairing.row_step_px));
   }
-  // Rows that differ on the whole must not outweigh the shape: they are what is looked for.
+  // A common row offset must not outweigh the shape: it is what we are looking for.
   const double shape = deviation_px / static_cast<double>(du_px.size()) / size_px;
   pairing.cost = shape + 0.2 * std::min(2.0, std::abs(pairing.row_step_px) / size_px);
   return pairing;
@@ -69,7 +71,7 @@ std::vector<BodyKeypoints> BodiesOf(const CheckedPeople& people) {
   return bodies;
 }
 
-/// The index of the best of the costs where it is clearly better than the second; else none.
+/// Index of the lowest cost if it is clearly lower than the second lowest; otherwise nothing.
 std::optional<std::size_t> ClearlyBest(const std::vector<double>& costs) {
   constexpr double kMaxCost = 0.25;
   constexpr double kMaxRatio = 0.7;
@@ -152,12 +154,12 @@ bool PeoplePairCheck::ReportResolution(const std::string& where, FindingList* fi
   if (std::min(sizes_left_px_.size(), sizes_right_px_.size()) < kMinPeople) return false;
   const double factor = Quantile(sizes_right_px_, 0.5) / Quantile(sizes_left_px_, 0.5);
   if (std::max(factor, 1 / factor) < kMaxFactor) return false;
-  // People who are seen by one camera alone change the sizes, but not while pairs still fit.
+  // People seen by only one camera change the sizes, but not as long as pairs still fit.
   if (static_cast<double>(disparities_px_.size()) > 0.3 * std::min(num_left_, num_right_))
     return false;
   findings->Fail("keypoints.resolution", where,
                  "people in the right images are " + Brief(factor) +
-                     " times as large as in the left ones: keypoints of images of two sizes?");
+                     " times as large as in the left ones: detected in images of different sizes?");
   return true;
 }
 
@@ -174,17 +176,16 @@ void PeoplePairCheck::Report(const std::string& where, FindingList* findings) co
                             " people seen in both images: " + Percent(1 - num_negative / num) +
                             " have a positive disparity, median " +
                             Brief(Quantile(disparities_px_, 0.5)) + " px; rows differ by " +
-                            Brief(Quantile(absolute_px, 0.5)) + " px (median), on the whole by " +
+                            Brief(Quantile(absolute_px, 0.5)) + " px (median), overall by " +
                             Brief(row_step_px) + " px";
-  // A detector's rows differ by a few px from image to image, without a sign.
+  // A detector's rows vary by a few px from image to image, with either sign.
   const double allowed_px = std::max(3.0, 0.01 * camera_.height);
   if (num_negative > 0.7 * num) {
-    findings->Fail("keypoints.swapped", where,
-                   "the keypoints of left and right are exchanged: " + pairs);
+    findings->Fail("keypoints.swapped", where, "left and right keypoints are exchanged: " + pairs);
   } else if (std::abs(row_step_px) > allowed_px || Quantile(absolute_px, 0.5) > 2 * allowed_px) {
     findings->Warn("keypoints.rows", where,
-                   "the keypoints of left and right lie on different rows (of another size of the "
-                   "image, not rectified, or of other frames?): " +
+                   "left and right keypoints are on different rows (from another size of the "
+                   "image, not rectified, or from other frames?): " +
                        pairs);
   } else {
     findings->Note("keypoints.pairs", where, pairs);

@@ -8,10 +8,11 @@
 
 namespace airdos {
 
-/// Whether keypoints of the left and the right image are those of one stereo pair: both there,
-/// different, not exchanged (disparities of people are positive), of one resolution and on the same
-/// rows. People come in no order, so they are paired by shape and row, each with the other's best
-/// and clearly better than the second best; mismatches are few enough for medians.
+/// Checks whether the keypoints of the left and right images form stereo pairs: present in both,
+/// different, not exchanged (people's disparities are positive), at the same resolution and on the
+/// same rows. People come in no particular order, so they are paired by shape and row; a pair must
+/// be mutually best and clearly better than the second best. Mismatches are then rare enough for
+/// medians.
 class PeoplePairCheck {
  public:
   explicit PeoplePairCheck(const StereoCamera& camera) : camera_(camera) {}
@@ -24,15 +25,15 @@ class PeoplePairCheck {
   bool ReportResolution(const std::string& where, FindingList* findings) const;
 
   StereoCamera camera_;
-  int num_left_ = 0;  // people
+  int num_left_ = 0;  // number of people
   int num_right_ = 0;
-  int num_frames_ = 0;     // with people in both
-  int num_identical_ = 0;  // of those
+  int num_frames_ = 0;     // frames with people in both images
+  int num_identical_ = 0;  // of these
   std::string first_left_;
   std::string first_right_;
-  std::vector<double> sizes_left_px_;  // of everybody's body
+  std::vector<double> sizes_left_px_;  // one per person
   std::vector<double> sizes_right_px_;
-  std::vector<double> disparities_px_;  // of pairs of people, u_left - u_right
+  std::vector<double> disparities_px_;  // u_left - u_right, one per pair of people
   std::vector<double> row_steps_px_;    // v_right - v_left
 };
 

@@ -5,23 +5,24 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/dataset/image_file.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
 
-constexpr double kMinConfidence = 0.2;  // of joints that say something of a shape
-constexpr double kMargin = 0.1;         // of the image's size: detectors complete what is cut off
-constexpr int kMinPeople = 5;           // fewer shapes say nothing
-constexpr std::size_t kMaxFlags = 3;    // different confidences that may be flags
-constexpr double kMaxCoverage = 0.9;    // of the image by people
-constexpr double kMaxRippled = 0.03;    // of what is marked (RippledShare())
-constexpr int kMinMaskPoints = 50;      // fewer keypoints say nothing of a mask
+constexpr double kMinConfidence = 0.2;  // of joints that count for a person's shape
+constexpr double kMargin = 0.1;       // of the image size: detectors extrapolate beyond the border
+constexpr int kMinPeople = 5;         // fewer shapes are not significant
+constexpr std::size_t kMaxFlags = 3;  // distinct confidences that may be flags
+constexpr double kMaxCoverage = 0.9;  // share of the image covered by people
+constexpr double kMaxRippled = 0.03;  // of the marked pixels (RippledShare())
+constexpr int kMinMaskPoints = 50;    // fewer keypoints cannot test a mask
 
 bool IsSeen(const BodyKeypoint& joint) { return joint.confidence > kMinConfidence; }
 
-/// How badly the lengths of the visible segments keep the proportions of a grown person: median
-/// deviation of log(length / typical length) from its median, so that a joint that is far off says
-/// nothing. About 0.4 in the right order of joints, 1 in a wrong one. Nothing below six segments.
+/// How far the lengths of the visible segments are from an adult's proportions: median deviation of
+/// log(length / typical length) from its median, so that a single misplaced joint has no effect.
+/// About 0.4 for the right joint order, 1 for a wrong one. Nothing for fewer than six segments.
 std::optional<double> Disproportion(const BodyKeypoints& person) {
   std::vector<double> ratios;
   for (const Segment& segment : kSegments) {
@@ -37,8 +38,8 @@ std::optional<double> Disproportion(const BodyKeypoints& person) {
   return Quantile(ratios, 0.5);
 }
 
-/// The neck lies nearer to the middle of the shoulders than half their distance, or than a fifth of
-/// the trunk where the person is seen from the side.
+/// Whether the neck is closer to the middle of the shoulders than half their distance or, for a
+/// person seen from the side, than a fifth of the trunk.
 bool IsNeckBetweenShoulders(const BodyKeypoints& person) {
   const Eigen::Vector2d neck = person[kNeck].uv_px();
   const Eigen::Vector2d right = person[kRightShoulder].uv_px();
@@ -79,7 +80,7 @@ void KeypointCheck::AddPoints(const CheckedPeople& people, FindingList* findings
   }
   if (num_outside > 0 && num_outside_ == 0) first_outside_ = people.where;
   num_outside_ += num_outside;
-  // Some detectors' sums go a little above 1; the readers bound them.
+  // The scores of some detectors slightly exceed 1; the readers clamp them.
   if (worst < 0 || worst > 2) {
     findings->Fail("keypoints.confidence", people.where,
                    "a confidence of " + Brief(worst) + " is not within 0..1" +
@@ -134,14 +135,15 @@ void KeypointCheck::Report(const std::string& where, FindingList* findings) cons
   const double num_points = num_points_;
   if (num_below_two_ > 0.5 * num_points) {
     findings->Fail("keypoints.normalised", where,
-                   "coordinates are in 0..1 of the image's size; they are wanted in px");
+                   "coordinates are fractions of the image size; they are expected in px");
   } else if (num_outside_ > 0.2 * num_points) {
-    findings->Fail("keypoints.scale", where,
-                   Percent(num_outside_ / num_points) +
-                       " of the keypoints lie outside the image: they are of another size of it, "
-                       "about " +
-                       Brief(std::max(Quantile(u_shares_, 0.99), Quantile(v_shares_, 0.99))) +
-                       " times as large");
+    findings->Fail(
+        "keypoints.scale", where,
+        Percent(num_outside_ / num_points) +
+            " of the keypoints are outside the image: they belong to another image size, "
+            "about " +
+            Brief(std::max(Quantile(u_shares_, 0.99), Quantile(v_shares_, 0.99))) +
+            " times as large");
   } else {
     ReportExtent(where, findings);
     ReportLayout(where, findings);
@@ -154,11 +156,11 @@ void KeypointCheck::ReportConfidences(const std::string& where, FindingList* fin
   };
   if (is_one_of({0, 1})) {
     findings->Note("keypoints.flags", where,
-                   "all confidences are 0 or 1: every joint that is seen counts alike");
+                   "all confidences are 0 or 1: all visible joints have the same weight");
   } else if (is_one_of({0, 1, 2})) {
     findings->Warn("keypoints.flags", where,
-                   "all confidences are 0, 1 or 2, as COCO's flags of visibility (1: hidden, 2: "
-                   "seen): hidden joints would count as the seen ones; confidences of 0..1 are "
+                   "all confidences are 0, 1 or 2, like COCO's visibility flags (1: hidden, 2: "
+                   "visible): hidden joints would count like visible ones; confidences of 0..1 are "
                    "wanted");
   }
 }
@@ -170,17 +172,17 @@ void KeypointCheck::ReportExtent(const std::string& where, FindingList* findings
   if (num_people_ < kManyPeople || u > 0.55 || v > 0.55) return;
   findings->Warn("keypoints.extent", where,
                  "all keypoints lie in the upper left " + Percent(u) + " x " + Percent(v) +
-                     " of the image: of an image about " + Brief(std::max(u, v)) +
+                     " of the image: do they belong to an image about " + Brief(std::max(u, v)) +
                      " times as large?");
 }
 
 void KeypointCheck::ReportLayout(const std::string& where, FindingList* findings) const {
-  constexpr double kUsualOutside = 0.01;  // detectors complete people who are cut off
+  constexpr double kUsualOutside = 0.01;  // detectors extrapolate people cut off by the border
   if (num_outside_ > 0) {
     findings->Add(num_outside_ > kUsualOutside * num_points_ ? Severity::kWarning : Severity::kNote,
                   "keypoints.outside", first_outside_,
                   "here first, " + std::to_string(num_outside_) + " of " +
-                      std::to_string(num_points_) + " keypoints lie far outside the image of " +
+                      std::to_string(num_points_) + " keypoints are far outside the image of " +
                       std::to_string(camera_.width) + " x " + std::to_string(camera_.height) +
                       " px");
   }
@@ -189,7 +191,7 @@ void KeypointCheck::ReportLayout(const std::string& where, FindingList* findings
   const std::string shape = "the neck lies between the shoulders in " + Percent(necks) + " of " +
                             std::to_string(num_necks_) + " people, the nose above the hips in " +
                             Percent(heads) + " of " + std::to_string(num_heads_);
-  // Measured medians: 1.4 to 2.8 for COCO-18, 0.30 to 0.35 for the same people in COCO-17's order.
+  // Measured medians: 1.4 to 2.8 for COCO-18; 0.30 to 0.35 for the same people in COCO-17 order.
   constexpr double kClearlyBetter = 0.7;
   if (coco17_ratios_.size() >= kMinPeople && Quantile(coco17_ratios_, 0.5) < kClearlyBetter) {
     findings->Fail("keypoints.layout", where,
@@ -200,9 +202,10 @@ void KeypointCheck::ReportLayout(const std::string& where, FindingList* findings
     findings->Fail(
         "keypoints.layout", where,
         "the order of the joints is not COCO-18, it looks like the first 18 of OpenPose's "
-        "BODY_25: joint 8 lies in the middle of 9 and 12 in " +
+        "BODY_25: joint 8 is midway between 9 and 12 in " +
             Percent(1.0 * num_body25_ / num_body25_shapes_) + " of " +
-            std::to_string(num_body25_shapes_) + " people; give all 25, or write them in COCO-18");
+            std::to_string(num_body25_shapes_) +
+            " people; provide all 25, or convert them to COCO-18");
   } else if (num_necks_ >= kMinPeople && necks < 0.5) {
     findings->Fail("keypoints.layout", where,
                    "the order of the joints is not the layout's: " + shape);
@@ -289,9 +292,9 @@ void MaskCheck::Report(const std::string& where, FindingList* findings) const {
   }
   if (num_rippled_ > 0.5 * static_cast<double>(coverages_.size())) {
     findings->Fail("masks.jpeg", first_rippled_,
-                   "here first, the numbers ripple around the edges in " +
-                       std::to_string(num_rippled_) + " of " + std::to_string(coverages_.size()) +
-                       " masks: they were a JPEG once, which smears them; save the masks as PNG at "
+                   "here first, the values ripple around edges in " + std::to_string(num_rippled_) +
+                       " of " + std::to_string(coverages_.size()) +
+                       " masks: they were once JPEG, which blurs them; save the masks as PNG at "
                        "once");
     return;
   }
@@ -309,10 +312,11 @@ std::string MaskCheck::FitText() const {
 bool MaskCheck::ReportInverted(const std::string& where, FindingList* findings) const {
   if (num_points_ < kMinMaskPoints || Quantile(coverages_, 0.5) <= 0.3) return false;
   if (num_inside_ >= 0.8 * chance_ || num_inside_ >= 0.5 * num_points_) return false;
-  findings->Fail("masks.polarity", where,
-                 "fewer keypoints than by chance lie on people: inverted (0 is background), or of "
-                 "other images: " +
-                     FitText());
+  findings->Fail(
+      "masks.polarity", where,
+      "fewer keypoints than by chance are on people: inverted (0 is background), or from "
+      "other images: " +
+          FitText());
   return true;
 }
 
@@ -321,8 +325,8 @@ bool MaskCheck::ReportFull(const std::string& where, FindingList* findings) cons
   if (coverage > kMaxCoverage) {
     findings->Fail("masks.coverage", where,
                    "masks cover " + Percent(coverage) +
-                       " of the image (median): a map where everything has a class, or inverted; 0 "
-                       "is wanted for all that is no person");
+                       " of the image (median): a class map, or inverted; everything "
+                       "that is not a person must be 0");
     return true;
   }
   if (num_full_ > 0) {
@@ -346,8 +350,9 @@ void MaskCheck::ReportFit(const std::string& where, FindingList* findings) const
   if (!has_points && coverage > 0.6) {
     findings->Warn("masks.polarity", where, "people are the minority; inverted? " + text);
   } else if (has_points && Quantile(coverages_, 1) == 0) {
-    findings->Fail("masks.empty", where,
-                   "no mask marks anybody, though there are keypoints of people: is everything 0?");
+    findings->Fail(
+        "masks.empty", where,
+        "no mask marks anybody, although there are keypoints of people: is everything 0?");
   } else if (has_points && inside < 0.5 && inside_scaled > 0.65 && inside_scaled > 2 * coverage) {
     findings->Fail("keypoints.resolution", where,
                    "the keypoints fit the masks (" + Percent(inside_scaled) +
@@ -363,7 +368,7 @@ void MaskCheck::ReportFit(const std::string& where, FindingList* findings) const
 void MaskCheck::ReportClasses(const std::string& where, FindingList* findings) const {
   if (num_points_ < kMinMaskPoints) return;
   constexpr double kMaxWithout = 0.25;  // of the image
-  constexpr double kMaxDensity = 0.25;  // of keypoints that were strewn over the image
+  constexpr double kMaxDensity = 0.25;  // density of randomly scattered keypoints
   double area_without = 0;
   std::string names;
   for (const auto& [value, seen] : values_) {
@@ -375,8 +380,8 @@ void MaskCheck::ReportClasses(const std::string& where, FindingList* findings) c
   if (area_without < kMaxWithout) return;
   findings->Warn("masks.classes", where,
                  "the numbers " + names + " mark " + Percent(area_without) +
-                     " of the image, but hardly any keypoint: a map of classes? Only people (and "
-                     "what else moves) may be marked");
+                     " of the image, but hardly any keypoint: a class map? Only people (and "
+                     "anything else that moves) may be marked");
 }
 
 }  // namespace airdos

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/check/stereo_matches.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
@@ -12,10 +13,10 @@ namespace {
 constexpr int kMaxCorners = 800;
 constexpr int kMaxShift = 2;  // frames
 constexpr std::size_t kNumShifts = 2 * kMaxShift + 1;
-constexpr double kMinMotionPx = 0.7;  // less between two images says nothing
+constexpr double kMinMotionPx = 0.7;  // less motion between two images is not informative
 constexpr std::size_t kMinMatches = 25;
 
-/// How well left k and right k + shift fit.
+/// How well left image k matches right image k + shift.
 struct Fit {
   std::size_t num_matches = 0;
   double row_error_px = 0;  // median
@@ -25,7 +26,7 @@ struct Place {
   std::string where_left;
   std::array<std::string, kNumShifts> where_right;
   std::array<Fit, kNumShifts> fits;
-  std::size_t best = kMaxShift;  // index of the shift that fits clearly better; else no shift
+  std::size_t best = kMaxShift;  // index of the shift that fits clearly better, or of no shift
 };
 
 double MedianAbsolute(std::vector<double> values) {
@@ -41,7 +42,7 @@ double MotionPx(const cv::Mat& before, const cv::Mat& after) {
   return Quantile(steps_px, 0.5);
 }
 
-/// Half the row error or less, and more matches.
+/// At most half the row error, and more matches.
 bool IsClearlyBetter(const Fit& fit, const Fit& unshifted) {
   constexpr double kMinGainPx = 0.3;
   return fit.num_matches >= kMinMatches && fit.num_matches > unshifted.num_matches &&
@@ -49,7 +50,7 @@ bool IsClearlyBetter(const Fit& fit, const Fit& unshifted) {
          fit.row_error_px < unshifted.row_error_px - kMinGainPx;
 }
 
-/// Nothing where pictures are missing or the camera stands still.
+/// Nothing if pictures are missing or the camera stands still.
 std::optional<Place> LookAt(const std::vector<CheckedPictures>& window) {
   const cv::Mat& left = window[kMaxShift].left;
   for (const CheckedPictures& pictures : window) {
@@ -82,7 +83,7 @@ std::string FitText(const Place& place, std::size_t index) {
 bool CheckShift(const CheckedInput& input, std::size_t num_places, FindingList* findings) {
   const std::size_t num_frames = input.utimes().size();
   if (num_frames < kNumShifts) return false;
-  FindingList ignored;  // the check of the pictures has said it
+  FindingList ignored;  // the check of the pictures has reported them
   std::vector<Place> places;
   for (const std::size_t start : SampleEvenly(num_frames - kNumShifts + 1, num_places)) {
     std::vector<std::size_t> frames;
@@ -104,7 +105,7 @@ bool CheckShift(const CheckedInput& input, std::size_t num_places, FindingList* 
           (shift > 0 ? " late" : " early") + ": " + example->where_left + " fits " +
           FitText(*example, best) + " better than " + FitText(*example, kMaxShift) + "; in " +
           std::to_string(votes[best]) + " of " + std::to_string(places.size()) +
-          " places where the camera moves; were the recorders started apart?");
+          " places where the camera moves; were the recorders started separately?");
   return true;
 }
 

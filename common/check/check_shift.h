@@ -5,12 +5,12 @@
 
 namespace airdos {
 
-/// Whether the right images belong to the left ones of the same number, or to those one or two
-/// frames away (two recorders started apart). Left image k is matched with the right images k-2 to
-/// k+2 in up to `num_places` places, evenly spread, where the camera moves: only there a wrong
-/// partner shows, by rows that differ and by fewer matches. What moves along the rows alone does
-/// not tell. Returns true, and an error is among the findings, where another partner fits clearly
-/// better in most of the places.
+/// Whether the right images belong to the left ones with the same number, or to those one or two
+/// frames away (two recorders started separately). Matches left image k with right images k-2 to
+/// k+2 at up to `num_places` evenly spread places where the camera moves. Only there does a wrong
+/// partner show, through differing rows and fewer matches; motion purely along the rows does not
+/// reveal it. Returns true, and adds an error to the findings, if another partner fits clearly
+/// better at most of the places.
 bool CheckShift(const CheckedInput& input, std::size_t num_places, FindingList* findings);
 
 }  // namespace airdos

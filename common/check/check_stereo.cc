@@ -1,16 +1,16 @@
 #include "common/check/check_stereo.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "common/check/stereo_matches.h"
 #include "common/dataset/image_file.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
 
 constexpr int kMaxCorners = 800;
-constexpr int kMinMatches = 40;        // fewer say nothing
+constexpr int kMinMatches = 40;        // fewer are not significant
 constexpr double kMinClearSign = 0.7;  // share of the matches that must agree on a sign
 
 }  // namespace
@@ -48,7 +48,7 @@ void StereoCheck::Report(const std::string& where, FindingList* findings) const 
                        " pairs: too few to judge order, rectification and depth");
     return;
   }
-  if (is_shift_known_) return;  // of other frames neither order nor depth nor rows say anything
+  if (is_shift_known_) return;  // for wrong partners, signs, depths and rows mean nothing
   ReportOrder(where, findings);
   ReportRows(where, findings);
 }
@@ -86,9 +86,9 @@ void StereoCheck::ReportRows(const std::string& where, FindingList* findings) co
   for (const double error_px : row_errors_px_) absolute_px.push_back(std::abs(error_px));
   const double median_px = row_error_px();
   const std::string rows = "rows of matches differ by " + Brief(median_px) + " px (median), " +
-                           Brief(Quantile(absolute_px, 0.9)) + " px (90 %), on the whole by " +
+                           Brief(Quantile(absolute_px, 0.9)) + " px (90 %), overall by " +
                            Brief(Quantile(row_errors_px_, 0.5)) + " px";
-  // The front end searches a corner within 1.5 px of its row.
+  // The frontend searches for a corner within 1.5 px of its row.
   if (median_px > 1.5) {
     findings->Fail("images.rectification", where, "the images are not rectified: " + rows);
   } else if (median_px > 0.6) {

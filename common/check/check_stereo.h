@@ -10,21 +10,21 @@
 
 namespace airdos {
 
-/// Whether pairs of images are what they are said to be: of one size, left and right (disparities
-/// are positive), different, rectified (matches lie on one row), and at plausible depths
-/// (MatchStereo() in stereo_matches.h).
+/// Checks whether image pairs are what they should be: of equal size, left and right not exchanged
+/// (disparities are positive), different, rectified (matches are on the same row), and with
+/// plausible depths (MatchStereo() in stereo_matches.h).
 class StereoCheck {
  public:
   explicit StereoCheck(const StereoCamera& camera) : camera_(camera) {}
 
-  /// Pictures are CV_8UC1. A size that differs from the camera's is a finding at once.
+  /// Pictures are CV_8UC1. A size that differs from the camera's is reported at once.
   void Add(const std::string& where_left, const cv::Mat& left, const std::string& where_right,
            const cv::Mat& right, FindingList* findings);
   void Report(const std::string& where, FindingList* findings) const;
 
-  /// Median of the absolute differences of rows so far, px.
+  /// Median absolute row difference so far, px.
   double row_error_px() const;
-  /// Why the rows differ has been found and said (check_shift.h).
+  /// The reason why the rows differ has been found and reported (check_shift.h).
   void SetShiftKnown() { is_shift_known_ = true; }
 
  private:

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/util/quantile.h"
+
 namespace airdos {
 namespace {
 
 constexpr double kMinPeriod_s = 0.005;
 constexpr double kMaxPeriod_s = 1;
 
-/// "ms" where the interval would be that of a camera if the times were ms instead of s; or "".
+/// "ms" if the interval would suit a camera if the times were ms instead of s; otherwise "".
 std::string OtherUnit(double period_s) {
   std::string unit;
   for (const char* name : {"ms", "us", "ns"}) {
@@ -21,7 +23,7 @@ std::string OtherUnit(double period_s) {
 
 void CheckRate(double period_s, const std::string& where, FindingList* findings) {
   if (period_s >= kMinPeriod_s && period_s <= kMaxPeriod_s) {
-    findings->Note("times.rate", where, Brief(1 / period_s) + " images a second");
+    findings->Note("times.rate", where, Brief(1 / period_s) + " images per second");
     return;
   }
   const std::string interval = "the median interval is " + Brief(period_s) + " s";
@@ -35,7 +37,7 @@ void CheckRate(double period_s, const std::string& where, FindingList* findings)
   }
 }
 
-/// Times that repeat or go back.
+/// Checks for times that repeat or go back.
 void CheckOrder(const std::vector<std::int64_t>& utimes, const std::string& where,
                 FindingList* findings) {
   if (utimes.size() > 2 && std::equal(utimes.begin() + 1, utimes.end(), utimes.begin())) {
@@ -50,8 +52,8 @@ void CheckOrder(const std::vector<std::int64_t>& utimes, const std::string& wher
     findings->Fail(
         "times.order", where,
         "image " + std::to_string(i) +
-            (interval_s == 0 ? " has the time of the one before"
-                             : " comes " + Brief(-interval_s) + " s before the one before it"));
+            (interval_s == 0 ? " has the same time as the previous one"
+                             : " comes " + Brief(-interval_s) + " s before the previous one"));
   }
 }
 

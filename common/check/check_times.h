@@ -9,9 +9,9 @@
 
 namespace airdos {
 
-/// Whether capture times (us) can be those of a camera: increasing, at 1 to 200 images a second,
-/// without gaps (1.5 times the median interval). Times that were written in ms, us or ns where s
-/// are wanted are told by their interval.
+/// Whether capture times (us) can be those of a camera: increasing, at 1 to 200 images per second,
+/// without gaps (1.5 times the median interval). Times in ms, us or ns instead of s are recognised
+/// by their interval.
 void CheckTimes(const std::vector<std::int64_t>& utimes, const std::string& where,
                 FindingList* findings);
 

@@ -6,18 +6,19 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "common/check/check_findings.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
 
-constexpr float kMaxRatio = 0.8F;   // of the best to the second-best distance (Lowe)
+constexpr float kMaxRatio = 0.8F;   // best to second-best distance (Lowe)
 constexpr float kMaxHamming = 60;   // bits of 256
-constexpr double kMaxAlignPx = 3;   // a corner of the pyramid is at most this far off
-constexpr int kMinRowMatches = 20;  // fewer say nothing of a single pair
-constexpr double kNoSignPx = 0.3;   // smaller disparities have no sign
+constexpr double kMaxAlignPx = 3;   // maximum error of a corner found in the pyramid
+constexpr int kMinRowMatches = 20;  // fewer are not significant for a single pair
+constexpr double kNoSignPx = 0.3;   // the sign of a smaller disparity is not significant
 
-/// Whether a row of `a` could be one of `b`: a pair that is not rectified at all is seldom further
-/// off than this, and mismatches are all over the image.
+/// Tolerance for matching a row of `a` with a row of `b`: even an unrectified pair is rarely off by
+/// more than this, whereas mismatches are spread over the whole image.
 double MaxRowErrorPx(const cv::Mat& image) { return std::max(20.0, 0.1 * image.rows); }
 
 StereoMatches MatchByDescriptor(const cv::Mat& left, const cv::Mat& right, int max_corners) {
@@ -49,7 +50,7 @@ StereoMatches MatchByDescriptor(const cv::Mat& left, const cv::Mat& right, int m
   return matches;
 }
 
-/// Corners of a pyramid are good to a pixel or two; aligned patches to a tenth.
+/// Corners found in the pyramid are accurate to a pixel or two, aligned patches to a tenth.
 StereoMatches Align(const cv::Mat& left, const cv::Mat& right, const StereoMatches& matches) {
   StereoMatches aligned;
   if (matches.left.empty()) return aligned;

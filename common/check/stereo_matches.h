@@ -7,29 +7,29 @@
 
 namespace airdos {
 
-/// Corners that are seen in both images of a pair, px.
+/// Corners visible in both images of a pair, px.
 struct StereoMatches {
   std::vector<cv::Point2f> left;
-  std::vector<cv::Point2f> right;  ///< of the same corners
+  std::vector<cv::Point2f> right;  ///< the same corners
 
   std::vector<double> Disparities() const;     ///< u_left - u_right, px
   std::vector<double> RowDifferences() const;  ///< v_right - v_left, px
 };
 
-/// Matches by descriptor without regard to rows or signs, aligned to a fraction of a pixel, so that
-/// they can tell whether a pair is what it is said to be; mismatches are few enough for medians.
-/// Both are CV_8UC1 and of one size; of each at most `max_corners` are looked at.
+/// Matches corners by descriptor, regardless of rows and signs, and aligns them to a fraction of a
+/// pixel, so the matches can reveal whether the pair is what it should be; mismatches are rare
+/// enough for medians. Both images are CV_8UC1 and of equal size; at most `max_corners` of each are
+/// used.
 StereoMatches MatchStereo(const cv::Mat& left, const cv::Mat& right, int max_corners);
 
-/// How a pair's matches lie to one another.
+/// Summary of the rows and disparities of a pair's matches.
 struct RowError {
   int num_matches = 0;
-  double median_px = 0;  ///< of |v_right - v_left|; near 0 where the images are rectified
-  double share_negative =
-      0;  ///< of matches with a disparity below 0: 1 where the images are exchanged
+  double median_px = 0;       ///< of |v_right - v_left|; near 0 if the images are rectified
+  double share_negative = 0;  ///< share of negative disparities; 1 if the images are exchanged
 };
 
-/// Nothing where matches are too few to tell.
+/// Nothing if there are too few matches.
 std::optional<RowError> MeasureRowError(const cv::Mat& left, const cv::Mat& right, int max_corners);
 
 }  // namespace airdos

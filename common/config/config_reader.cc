@@ -38,31 +38,23 @@ void Flatten(const YAML::Node& node, const std::string& prefix, const std::strin
   }
 }
 
-/// As YAML reads it again: quoted where it is not plain.
-std::string Quoted(const std::string& value) {
-  constexpr const char* kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./,+-";
-  if (!value.empty() && value.find_first_not_of(kPlain) == std::string::npos) return value;
-  YAML::Emitter text;
-  text << YAML::DoubleQuoted << value;
-  return text.c_str();
-}
-
 }  // namespace
 
-ConfigReader ConfigReader::FromFile(const std::string& path) {
+ConfigReader ConfigReader::FromFile(const std::string& path, const RenamedKeys& renamed) {
   RequireRegularFile(path);
   std::ifstream file(path);
   if (!file) throw InputError(path + ": cannot be read");
   std::string text(kMaxTextBytes + 1, '\0');  // one more, which FromString() refuses
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(file.gcount()));
-  return FromString(text, path);
+  return FromString(text, path, renamed);
 }
 
-ConfigReader ConfigReader::FromString(const std::string& text, const std::string& name) {
+ConfigReader ConfigReader::FromString(const std::string& text, const std::string& name,
+                                      const RenamedKeys& renamed) {
   ConfigReader reader;
   reader.name_ = name;
+  reader.renamed_ = renamed;
   if (text.size() > kMaxTextBytes) {
     throw InputError(name + ": holds more than " + std::to_string(kMaxTextBytes) + " bytes");
   }
@@ -72,7 +64,14 @@ ConfigReader ConfigReader::FromString(const std::string& text, const std::string
   } catch (const YAML::Exception& error) {
     throw InputError(name + ": line " + std::to_string(error.mark.line + 1) + ": " + error.msg);
   }
+  for (const auto& [key, value] : reader.values_) reader.RequireNotRenamed(key);
   return reader;
+}
+
+void ConfigReader::RequireNotRenamed(const std::string& key) const {
+  const auto it = renamed_.find(key);
+  if (it == renamed_.end()) return;
+  throw InputError(name_ + ": key '" + key + "' is called '" + it->second + "' now");
 }
 
 void ConfigReader::Override(const std::string& assignment) {
@@ -83,6 +82,7 @@ void ConfigReader::Override(const std::string& assignment) {
   const std::string key = assignment.substr(0, equals);
   const auto it = values_.find(key);
   if (it == values_.end()) {
+    RequireNotRenamed(key);
     Fail(key, assignment.substr(equals + 1), "there is no such key" + DidYouMean(key, Keys()));
   }
   it->second = assignment.substr(equals + 1);
@@ -150,7 +150,7 @@ void ConfigReader::Finish() const {
 
 std::string ConfigReader::Resolved() const {
   std::string text;
-  for (const auto& [key, value] : values_) text += key + ": " + Quoted(value) + "\n";
+  for (const auto& [key, value] : values_) text += key + ": " + QuotedYaml(value) + "\n";
   return text;
 }
 
@@ -158,6 +158,15 @@ std::vector<std::string> ConfigReader::Keys() const {
   std::vector<std::string> keys;
   for (const auto& [key, value] : values_) keys.push_back(key);
   return keys;
+}
+
+std::string QuotedYaml(const std::string& value) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./,+-";
+  if (!value.empty() && value.find_first_not_of(kPlain) == std::string::npos) return value;
+  YAML::Emitter text;
+  text << YAML::DoubleQuoted << value;
+  return text.c_str();
 }
 
 }  // namespace airdos

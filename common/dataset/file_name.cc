@@ -31,7 +31,7 @@ std::string WithoutTrailingZeros(const std::string& digits) {
   return last == std::string::npos ? "" : digits.substr(0, last + 1);
 }
 
-/// The whole part and the decimals.
+/// Splits a number into its integer part and its decimals.
 std::pair<std::string, std::string> Split(const std::string& number) {
   const std::size_t point = number.find('.');
   if (point == std::string::npos) return {number, ""};
@@ -45,14 +45,13 @@ bool IsNameLess(const FileName& a, const FileName& b) {
   return a.name < b.name;
 }
 
-/// Whether digits, a point and digits are one number: a time such as 1403636579.76, not the parts
-/// of 1.2.
+/// Whether digits, a point and digits form one number: a time such as 1403636579.76, but not 1.2.
 bool AreDecimals(std::size_t num_whole, std::size_t num_decimals) {
   return num_whole >= 6 || num_decimals >= 3;
 }
 
-/// The number that is another one in each name, and grows as the names do in natural order; where
-/// several names have the same numbers, the first that differs at all.
+/// The number that is different in each name and increases with them in natural order; if names
+/// share numbers, the first number that differs at all.
 int FindCountingNumber(const std::vector<FileName>& names) {
   const int num_numbers = static_cast<int>(names[0].numbers.size());
   std::vector<int> changing;
@@ -63,7 +62,7 @@ int FindCountingNumber(const std::vector<FileName>& names) {
     };
     if (std::any_of(names.begin(), names.end(), differs)) changing.push_back(i);
   }
-  if (changing.empty()) return num_numbers - 1;  // one file, or all of one number
+  if (changing.empty()) return num_numbers - 1;  // one file, or the same numbers everywhere
   if (changing.size() == 1) return changing[0];
   for (const int i : changing) {
     const auto at = static_cast<std::size_t>(i);

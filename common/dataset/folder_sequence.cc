@@ -16,9 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kAssumedPeriodUs = 100000;  // both public sets run at 10 Hz
+constexpr std::int64_t kAssumedPeriodUs = 100000;  // both public data sets have 10 Hz
 
-/// The usual step from number to number: 5 where every fifth image was kept.
+/// The usual step between consecutive numbers: 5 if every fifth image was kept.
 std::uint64_t UsualStep(const std::vector<std::uint64_t>& numbers) {
   std::vector<std::uint64_t> steps;
   for (std::size_t i = 1; i < numbers.size(); ++i) steps.push_back(numbers[i] - numbers[i - 1]);
@@ -28,7 +28,7 @@ std::uint64_t UsualStep(const std::vector<std::uint64_t>& numbers) {
   return *middle;
 }
 
-/// 10 Hz; an image that is missing leaves a gap, if not of years.
+/// 10 Hz; a missing image leaves a gap, unless that would be years long.
 void AssumeTimes(const std::string& path, FolderSequence::Contents* contents) {
   const std::vector<std::uint64_t>& numbers = contents->left.numbers;
   const std::uint64_t step = UsualStep(numbers);
@@ -45,7 +45,7 @@ void AssumeTimes(const std::string& path, FolderSequence::Contents* contents) {
     has_gaps = has_gaps || by_number != in_order;
     contents->utimes.push_back(by_number);
   }
-  contents->notes.push_back(path + " is not there: the images are taken to be 0.1 s apart" +
+  contents->notes.push_back(path + " is not there: the images are assumed to be 0.1 s apart" +
                             (has_gaps ? ", more where numbers are missing" : ""));
 }
 
@@ -66,15 +66,15 @@ void FillTimes(FolderSequence::Contents* contents) {
                             named->unit);
 }
 
-/// A mask of another kind in the place of `png` must not be passed over in silence.
+/// Refuses a mask of another format in place of `png`, so that it is not silently ignored.
 void RefuseOtherMask(const std::string& png) {
   for (const char* ending : {".jpg", ".jpeg", ".JPG", ".PNG", ".npy", ".npz", ".bmp", ".tif",
                              ".tiff", ".gif", ".webp", ".pgm", ".exr"}) {
     const std::string other = fs::path(png).replace_extension(ending).string();
     if (!fs::exists(other)) continue;
-    throw InputError(other + ": masks are read as .png only, this one would be passed over; " +
+    throw InputError(other + ": masks are read from .png only, so this one would be ignored; " +
                      (std::string(ending).find("j") == 1 || std::string(ending) == ".JPG"
-                          ? "JPEG smears their numbers: "
+                          ? "JPEG blurs their values: "
                           : "") +
                      "save them as PNG, 0 for the background, or move the folder away");
   }
@@ -102,7 +102,7 @@ FolderSequence::FolderSequence(Contents contents) : contents_(std::move(contents
   keypoint_layout_ = FindLayout(keypoints).value_or(KeypointLayout::kCoco18);
 }
 
-/// Of each image; where there is none, the name that it would have.
+/// One name per image; if there is no such file, the name that it would have.
 std::vector<std::string> FolderSequence::PeopleFiles(const std::string& name,
                                                      const std::string& ending) const {
   std::string folder = contents_.folder + "/" + name;
@@ -134,7 +134,7 @@ SequenceFrame FolderSequence::Load(std::size_t index) const {
   frame.keypoint_layout = keypoint_layout_;
   const auto read_people = [&](const std::string& path) {
     KeypointFile file = ReadKeypoints(path);
-    if (file.layout && file.layout != keypoint_layout_) {  // the files were exchanged meanwhile
+    if (file.layout && file.layout != keypoint_layout_) {  // the files have changed since
       throw InputError(path + ": holds people in " + NameOf(*file.layout) + ", others are in " +
                        NameOf(keypoint_layout_));
     }

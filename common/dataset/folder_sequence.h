@@ -10,26 +10,27 @@
 
 namespace airdos {
 
-/// A sequence with one file an image, whatever its layout: a layout fills in the contents.
+/// A sequence with one file per image, in any layout: each layout fills in the contents.
 class FolderSequence : public StereoSequence {
  public:
+  /// Everything that depends on the layout.
   struct Contents {
     std::string folder;
     std::string left_folder;   ///< name inside `folder`
     std::string right_folder;  ///< name inside `folder`
-    /// Of alphapose_0, alphapose_1 and rcnnseg_image_0 in `folder`, where the people of this
-    /// sequence are; empty: directly there.
+    /// Subfolder of alphapose_0, alphapose_1 and rcnnseg_image_0 in `folder` that holds the people
+    /// of this sequence; empty if they are not in a subfolder.
     std::string people_subfolder;
     StereoCamera camera;
     ImageNames left;
-    ImageNames right;                  ///< of the same keys
-    std::vector<std::int64_t> utimes;  ///< us, of each image
+    ImageNames right;                  ///< with the same keys
+    std::vector<std::int64_t> utimes;  ///< us, one per image
     std::vector<std::optional<Se3>> ground_truth;
     TrajectoryAxes axes = TrajectoryAxes::kUnknown;
     std::vector<std::string> notes;
   };
 
-  /// Looks up the people's files. Throws InputError where their keypoints have several layouts.
+  /// Looks up the people's files. Throws InputError if their keypoints have different layouts.
   explicit FolderSequence(Contents contents);
 
   const StereoCamera& camera() const override { return contents_.camera; }
@@ -53,12 +54,12 @@ class FolderSequence : public StereoSequence {
   KeypointLayout keypoint_layout_ = KeypointLayout::kCoco18;
 };
 
-/// Fills in names and times: the images of both folders must have the same numbers. times.txt has
-/// a time for each image, or for each number (RowsOfImages()). Without it the times are those in
-/// the names, else 0.1 s a number; that is noted.
+/// Fills in names and times. The images of both folders must have the same numbers. times.txt has
+/// one time per image or per number (RowsOfImages()). Without it, times are taken from the names,
+/// or else assumed to be 0.1 s per number, with a note.
 void FillImagesAndTimes(FolderSequence::Contents* contents);
 
-/// Fills in the ground truth from a file of one pose an image (or number).
+/// Fills in the ground truth from a file with one pose per image (or number).
 void FillPosesByRow(const std::string& path, const std::string& what, const std::vector<Se3>& poses,
                     FolderSequence::Contents* contents);
 

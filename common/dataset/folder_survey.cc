@@ -16,9 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxEntries = 10000;  // that are looked at in search of data sets
+constexpr std::size_t kMaxEntries = 10000;  // examined when searching for data sets
 
-/// Names of what lies in a folder, in order; nothing where it cannot be read.
+/// Names of a folder's entries, sorted; nothing if it cannot be read.
 std::vector<std::string> Entries(const std::string& folder,
                                  const std::function<bool(const fs::directory_entry&)>& is_wanted) {
   std::vector<std::string> names;
@@ -62,14 +62,14 @@ bool IsDirectory(const std::string& path) {
   return fs::is_directory(path, error);
 }
 
-/// A folder that is read, and what its files end with.
+/// A folder that is read, and the extension of its files.
 struct ReadFolder {
   std::string path;
   std::vector<std::string> endings;
   std::string wanted;
 };
 
-/// Files in it that are not of its kind.
+/// Finds the files in it with another extension.
 void FindInReadFolder(const ReadFolder& folder, std::vector<UnreadFiles>* unread) {
   std::vector<std::string> others;
   std::size_t num_read = 0;
@@ -85,13 +85,15 @@ void FindInReadFolder(const ReadFolder& folder, std::vector<UnreadFiles>* unread
   }
   if (others.empty()) return;
   const std::string kinds = CountByEnding(others) + ", which " +
-                            (others.size() == 1 ? "is" : "are") + " not read; wanted is " +
+                            (others.size() == 1 ? "is" : "are") + " not read; expected is " +
                             folder.wanted;
   unread->push_back(
       {folder.path, (num_read == 0 ? "holds only " : "holds ") + kinds, num_read == 0});
 }
 
-std::string Keypoints() { return "a .txt an image, a row `u v confidence ..` a person"; }
+std::string Keypoints() {
+  return "a .txt file per image with a row `u v confidence ..` per person";
+}
 
 std::vector<ReadFolder> ReadFolders(const std::string& folder) {
   std::string root = folder;
@@ -114,7 +116,7 @@ std::vector<ReadFolder> ReadFolders(const std::string& folder) {
   return folders;
 }
 
-/// Whether the folder holds a file that is read.
+/// Whether the folder has a file with this extension.
 bool HoldsAny(const std::string& folder, const std::string& ending) {
   const std::vector<std::string> files = Files(folder);
   return std::any_of(files.begin(), files.end(),
@@ -175,9 +177,9 @@ void FindOtherFiles(const std::string& folder, std::vector<UnreadFiles>* unread)
                          ending == ".yaml" || ending == ".yml" || ending == ".xml";
     if (!is_data) continue;
     if (ContainsAny(lower, {"keypoint", "alphapose", "openpose", "halpe", "skeleton"})) {
-      add("is not read; wanted are alphapose_0 and alphapose_1 with " + Keypoints());
+      add("is not read; expected are alphapose_0 and alphapose_1 with " + Keypoints());
     } else if (!has_times && ContainsAny(lower, {"time"})) {
-      add("is not read; times are read from times.txt, one in s a line");
+      add("is not read; times are read from times.txt, one per line, in s");
     } else if (!has_truth && ContainsAny(lower, {"pose", "truth", "gt.", "gt_", "trajectory"})) {
       add("is not read; ground truth is read from " + truth);
     } else if (!has_calibration &&
@@ -196,11 +198,11 @@ std::string ListOf(const std::string& folder, const std::vector<std::string>& na
   if (names.size() > kMaxShown) {
     text += " and " + std::to_string(names.size() - kMaxShown) + " more";
   }
-  return "holds " + std::to_string(names.size()) + " data sets: " + text + "; give one of them, " +
-         "such as " + folder + "/" + names[0];
+  return "holds " + std::to_string(names.size()) + " data sets: " + text +
+         "; choose one of them, " + "such as " + folder + "/" + names[0];
 }
 
-/// The data sets below a folder, by their names in it.
+/// The data sets below a folder, named relative to it.
 std::vector<std::string> SequencesBelow(const std::string& folder) {
   std::vector<std::string> found;
   for (const std::string& name : Folders(folder)) {
@@ -217,17 +219,18 @@ std::vector<std::string> SequencesBelow(const std::string& folder) {
   return found;
 }
 
-/// Other layouts that users have.
+/// Recognises other layouts that users have.
 std::string ExplainOtherLayout(const std::string& folder) {
   const auto has = [&](const std::string& name) { return IsDirectory(folder + "/" + name); };
   const std::string wanted =
-      "image_0 and image_1 with rectified images, calib.json and times.txt are wanted";
+      "image_0 and image_1 with rectified images, calib.json and times.txt are expected";
   if (has("mav0/cam0/data") || has("cam0/data")) {
     return "this is EuRoC's layout, whose images are not rectified; " + wanted;
   }
   if (has("image_00/data") || has("image_02/data")) {
-    return "this is KITTI raw; make image_0 and image_1 of image_00/data and image_01/data, and "
-           "calib.txt of the lines P_rect_00 and P_rect_01 of calib_cam_to_cam.txt, named P0: and "
+    return "this is KITTI raw; make image_0 and image_1 from image_00/data and image_01/data, and "
+           "calib.txt from the lines P_rect_00 and P_rect_01 of calib_cam_to_cam.txt, named P0: "
+           "and "
            "P1:";
   }
   if (has("image_2") && has("image_3")) {
@@ -265,7 +268,7 @@ std::string ExplainOtherLayout(const std::string& folder) {
 std::vector<UnreadFiles> FindUnreadFiles(const std::string& folder) {
   std::vector<UnreadFiles> unread;
   for (const ReadFolder& read : ReadFolders(folder)) FindInReadFolder(read, &unread);
-  if (IsKittiTrackingSequence(folder)) return unread;  // what lies beside is of other sequences
+  if (IsKittiTrackingSequence(folder)) return unread;  // its neighbours are other sequences
   FindOtherFolders(folder, &unread);
   FindOtherFiles(folder, &unread);
   return unread;
@@ -281,14 +284,15 @@ std::string ExplainFolder(const std::string& folder) {
   const fs::path plain = fs::absolute(folder).lexically_normal() / ".";
   const fs::path parent = plain.parent_path().parent_path();
   if (plain.parent_path() != parent && HasSequenceLayout(parent.string())) {
-    return none + "this is a part of the data set " + parent.string() + "; give that";
+    return none + "this is part of the data set " + parent.string() + "; use that";
   }
   const std::string other = ExplainOtherLayout(folder);
   if (!other.empty()) return none + other;
   return none +
-         (HoldsImages(folder) ? "holds images, but they are wanted in image_0 and image_1; " : "") +
-         "neither calib.txt (KITTI odometry) nor image_0 and image_1 (TartanAir-Shibuya) are "
-         "there, nor is it image_02/NNNN of KITTI tracking";
+         (HoldsImages(folder) ? "contains images, but these are expected in image_0 and image_1; "
+                              : "") +
+         "there is neither calib.txt (KITTI odometry) nor image_0 and image_1 (TartanAir-"
+         "Shibuya), and it is not image_02/NNNN of KITTI tracking";
 }
 
 }  // namespace airdos

@@ -6,24 +6,24 @@
 
 namespace airdos {
 
-/// Files that look like input, but that nobody reads.
+/// Files that look like input but are not read.
 struct UnreadFiles {
   std::string where;  ///< the folder or file
-  std::string what;   ///< in words, with the remedy
-  /// The data set has no file that is read in its place: a folder of ours holds nothing but other
-  /// kinds of files.
+  std::string what;   ///< a description, with the remedy
+  /// Whether the data set lacks the files that should be there instead: one of its folders holds
+  /// nothing but files of other formats.
   bool is_error = false;
 };
 
-/// Looks through a data set of known layout for what it holds and is not read: folders of people,
-/// masks and images of other names (mask_0, keypoints_0, image_2), files of other kinds in the
-/// folders of images and keypoints (OpenPose's and AlphaPose's .json, .npy), times, poses and
-/// calibrations of other names. A folder that cannot be read holds nothing.
+/// Searches a data set of known layout for files that are not read: folders of people, masks and
+/// images with other names (mask_0, keypoints_0, image_2), other formats in the folders of images
+/// and keypoints (.json of OpenPose and AlphaPose, .npy), and times, poses and calibrations with
+/// other names. Folders that cannot be read are treated as empty.
 std::vector<UnreadFiles> FindUnreadFiles(const std::string& folder);
 
-/// What a folder without known layout is, and the remedy: the data set or data sets in it (up to
-/// two levels below), the data set that it lies in, another layout (EuRoC, KITTI raw, TartanAir,
-/// ..) or which folders are missing. Without the folder's name.
+/// Explains a folder whose layout is unknown, with the remedy: data sets inside it (up to two
+/// levels down), the data set that it is part of, another layout (EuRoC, KITTI raw, TartanAir,
+/// ...), or the folders that are missing. The text does not repeat the folder's name.
 std::string ExplainFolder(const std::string& folder);
 
 }  // namespace airdos

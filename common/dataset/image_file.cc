@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -26,9 +26,9 @@ std::string WhyHeaderIsNone(const std::uint8_t* data, std::size_t size) {
 
 std::string WhyHeaderIsUnfit(const ImageHeader& header) {
   if (header.is_png) return "";
-  if (header.num_channels == 4) return "is a JPEG in CMYK (for printers); grey or RGB is wanted";
+  if (header.num_channels == 4) return "is a JPEG in CMYK (for printers); grey or RGB is expected";
   if (header.bits != 8) {
-    return "is a JPEG with " + std::to_string(header.bits) + " bits a sample; 8 are wanted";
+    return "is a JPEG with " + std::to_string(header.bits) + " bits per sample; 8 are expected";
   }
   return "";
 }
@@ -37,11 +37,11 @@ cv::Mat Decode(const std::vector<std::uint8_t>& file, const std::string& name, i
   cv::Mat image;
   try {
     image = cv::imdecode(file, flags | cv::IMREAD_IGNORE_ORIENTATION);
-  } catch (const cv::Exception&) {  // e.g. a kind of PNG that OpenCV does not know
+  } catch (const cv::Exception&) {  // e.g. a PNG variant that OpenCV does not support
     image.release();
   }
   if (image.empty()) {
-    throw InputError(name + ": cannot be decoded as an image (are bytes of it damaged?)");
+    throw InputError(name + ": cannot be decoded as an image (is it damaged?)");
   }
   return image;
 }
@@ -51,7 +51,7 @@ bool HasSixteenBits(const std::vector<std::uint8_t>& file) {
   return header && header->is_png && header->bits == 16;
 }
 
-/// How many samples have this many significant bits.
+/// Number of samples by number of significant bits.
 using BitHistogram = std::array<std::int64_t, 17>;
 
 void CountBits(const cv::Mat& image, BitHistogram* histogram) {
@@ -67,7 +67,7 @@ void CountBits(const cv::Mat& image, BitHistogram* histogram) {
 }
 
 int SignificantBits(const BitHistogram& histogram) {
-  constexpr double kHotPixels = 1e-4;  // a hot pixel must not darken all others
+  constexpr double kHotPixels = 1e-4;  // hot pixels must not darken all others
   std::int64_t num_samples = 0;
   for (const std::int64_t count : histogram) num_samples += count;
   std::int64_t num_above = 0;
@@ -79,7 +79,7 @@ int SignificantBits(const BitHistogram& histogram) {
   return bits;
 }
 
-/// The first and the last bytes of a file; all of it where these do not tell.
+/// The first and last bytes of a file, or all of it if these are not enough.
 SurveyedImage SurveyImage(const std::string& path, bool is_left) {
   SurveyedImage image;
   image.path = path;
@@ -141,7 +141,7 @@ std::optional<SixteenBitRange> FindSixteenBitRange(const StereoSequence& sequenc
         if (!HasSixteenBits(file) || IsCutShort(file.data(), file.size())) continue;
         CountBits(Decode(file, path, cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH), &histogram);
         has_any = true;
-      } catch (const InputError&) {  // whoever comes to this picture says it
+      } catch (const InputError&) {  // reported when this picture is read
       }
     }
   }
@@ -160,7 +160,7 @@ Picture DecodePicture(const std::vector<std::uint8_t>& file, const std::string& 
     return picture;
   }
   const cv::Mat samples = Decode(file, name, flags | cv::IMREAD_ANYDEPTH);
-  // As integers, so that it is a shift on every machine: OpenCV's own scaling rounds.
+  // In integers, so that it is a bit shift on every machine: OpenCV's own scaling rounds.
   picture.pixels.create(samples.size(), CV_8UC(samples.channels()));
   std::int64_t num_saturated = 0;
   for (int row = 0; row < samples.rows; ++row) {
@@ -198,10 +198,8 @@ std::string SizeMismatchText(std::int64_t width, std::int64_t height, const std:
   const double factor = static_cast<double>(width) / static_cast<double>(wanted_width);
   const double factor_y = static_cast<double>(height) / static_cast<double>(wanted_height);
   if (width == wanted_height && height == wanted_width) return text + ": turned by 90 degrees";
-  if (std::abs(factor / factor_y - 1) > 0.02) return text + ": of other proportions";
-  char number[32];
-  std::snprintf(number, sizeof(number), "%.3g", factor);
-  return text + ": " + number + " times as large";
+  if (std::abs(factor / factor_y - 1) > 0.02) return text + ": with another aspect ratio";
+  return text + Format(": %.3g times as large", factor);
 }
 
 }  // namespace airdos

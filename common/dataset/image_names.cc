@@ -10,6 +10,7 @@
 #include "common/dataset/file_name.h"
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
@@ -39,7 +40,7 @@ std::vector<std::string> TakeHidden(std::vector<std::string>* names) {
   throw InputError(folder + what);
 }
 
-/// Two series of nearly one size: it is not known which is meant.
+/// Refuses two series of similar size: it is unknown which one is meant.
 void CheckIsOneSeries(const std::string& folder, const std::vector<NameSeries>& series) {
   if (series.size() < 2) return;
   const NameSeries& first = series[0];
@@ -49,19 +50,19 @@ void CheckIsOneSeries(const std::string& folder, const std::vector<NameSeries>& 
   for (const NameSeries& one : series) num_names += one.names.size();
   if (series.size() > 2 && 2 * first.names.size() < num_names) {
     throw InputError(folder + ": its images cannot be ordered: their names, such as " + names +
-                     ", have no common form; rename them to 000000.png, 000001.png, ...");
+                     ", have no common pattern; rename them to 000000.png, 000001.png, ...");
   }
   const bool is_rival = second.names.size() > 1 && 4 * second.names.size() >= first.names.size();
   const bool are_two = first.names.size() == 1 && !second.names[0].numbers.empty();
   if (is_rival || are_two) {
-    throw InputError(folder + ": holds images of two forms of names, " + names + " (" +
+    throw InputError(folder + ": contains images with two kinds of names, " + names + " (" +
                      std::to_string(first.names.size()) + " and " +
                      std::to_string(second.names.size()) +
-                     "): take those that are not of this sequence out of the folder");
+                     "): remove those that do not belong to this sequence");
   }
 }
 
-/// The names without numbers, each of a form of its own, in order of text.
+/// The names without numbers, each with its own pattern, in lexicographic order.
 NameSeries Unnumbered(const std::vector<std::string>& names) {
   NameSeries series;
   for (const std::string& name : names) series.names.push_back(TakeApart(name));
@@ -73,15 +74,15 @@ void CheckAreUnique(const std::string& folder, const NameSeries& series) {
   for (const FileName& name : series.names) {
     const auto [it, is_new] = seen.emplace(series.KeyOf(name), name.name);
     if (!is_new) {
-      throw InputError(folder + ": two files of one image, '" + it->second + "' and '" + name.name +
-                       "': take one of them out of the folder");
+      throw InputError(folder + ": two files for the same image, '" + it->second + "' and '" +
+                       name.name + "': remove one of them");
     }
   }
 }
 
 std::vector<std::uint64_t> WholeNumbers(const std::vector<std::string>& keys, bool are_numbers) {
   constexpr std::size_t kMaxDigits = 19;                      // nanoseconds since 1970
-  constexpr std::uint64_t kMaxNumber = 9000000000000000000U;  // of 64 bits with a sign
+  constexpr std::uint64_t kMaxNumber = 9000000000000000000U;  // fits into 64 bits with sign
   std::vector<std::uint64_t> numbers;
   for (const std::string& key : keys) {
     if (!are_numbers || key.size() > kMaxDigits || key.find('.') != std::string::npos) return {};
@@ -101,12 +102,11 @@ std::vector<std::string> WithoutPartner(const ImageNames& of, const ImageNames& 
 }
 
 double MedianStep(const std::vector<std::uint64_t>& numbers) {
-  std::vector<std::uint64_t> steps;
-  for (std::size_t i = 1; i < numbers.size(); ++i) steps.push_back(numbers[i] - numbers[i - 1]);
-  if (steps.empty()) return 0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return static_cast<double>(*middle);
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    steps.push_back(static_cast<double>(numbers[i] - numbers[i - 1]));
+  }
+  return Quantile(std::move(steps), 0.5);
 }
 
 struct Unit {
@@ -115,11 +115,11 @@ struct Unit {
 };
 constexpr Unit kUnits[] = {{"s", 1}, {"ms", 1e3}, {"us", 1e6}, {"ns", 1e9}};
 
-/// The unit in which whole numbers are times.
+/// The unit in which integer numbers are times.
 const Unit* UnitOf(const std::vector<std::uint64_t>& numbers) {
   constexpr double kYear2000_s = 946684800;
   constexpr double kYear2100_s = 4102444800;
-  constexpr double kMinStep = 5000;  // nobody counts images in such steps
+  constexpr double kMinStep = 5000;  // nobody numbers images in such steps
   const double step = MedianStep(numbers);
   for (const Unit& unit : kUnits) {
     const double first_s = static_cast<double>(numbers[0]) / unit.per_second;
@@ -145,8 +145,8 @@ ImageNames ListImages(const std::string& folder) {
     series = Unnumbered(names);
     if (names.size() > 1) {
       result.notes.push_back(folder +
-                             ": its names have no numbers: the images are taken in order "
-                             "of text, from '" +
+                             ": its names have no numbers: the images are used in "
+                             "alphabetical order, from '" +
                              names.front() + "' to '" + names.back() + "'");
     }
   } else {
@@ -164,9 +164,9 @@ ImageNames ListImages(const std::string& folder) {
   result.numbers =
       WholeNumbers(result.keys, series.counting >= 0 && !series.names[0].numbers.empty());
   if (!strays.empty()) {
-    result.notes.push_back(
-        folder + ": " + FirstFew(strays) + (strays.size() == 1 ? " is" : " are") +
-        " not named like the other images ('" + result.files[0] + "'): not taken");
+    result.notes.push_back(folder + ": " + FirstFew(strays) +
+                           (strays.size() == 1 ? " is" : " are") +
+                           " not named like the other images ('" + result.files[0] + "'): skipped");
   }
   return result;
 }
@@ -182,10 +182,10 @@ void CheckPairs(const ImageNames& left, const ImageNames& right) {
   if (!left_alone.empty()) alone += "; only on the left: " + FirstFew(left_alone);
   if (!right_alone.empty()) alone += "; only on the right: " + FirstFew(right_alone);
   if (left.files.size() == right.files.size() && TimesFromNames(left) && TimesFromNames(right)) {
-    alone += "; the names are times of each camera: name the images of a pair alike";
+    alone += "; the names are times of each camera: give both images of a pair the same name";
   }
-  throw InputError(counts + ", and not all have a partner of the same number" + alone +
-                   "; take these out or add their partners");
+  throw InputError(counts + ", and not all have a partner with the same number" + alone +
+                   "; remove these or add their partners");
 }
 
 std::vector<std::string> FindPartners(const std::string& folder, const std::string& ending,
@@ -237,7 +237,7 @@ std::optional<NamedTimes> TimesFromNames(const ImageNames& names) {
     if (unit == nullptr) return std::nullopt;
     times.unit = unit->name;
     for (const std::uint64_t number : names.numbers) {
-      // Exact: nanoseconds since 1970 have more digits than a double.
+      // Exact: nanoseconds since 1970 have more digits than a double can hold.
       const auto value = static_cast<std::int64_t>(number);
       times.utimes.push_back(unit->per_second == 1e9
                                  ? (value + 500) / 1000

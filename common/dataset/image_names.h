@@ -8,45 +8,46 @@
 
 namespace airdos {
 
-/// The images of one folder in the order of the numbers in their names.
+/// The images of one folder, ordered by the numbers in their names.
 ///
-/// A name is text, numbers and an ending: 000003.png, frame1.jpg, left12.jpg, 000003_10.png,
-/// 1403636579763555584.png, 1403636579.763555.png. Most names of a folder differ only in their
-/// numbers, and that series is taken. What is not of it is named in `notes` and not taken: hidden
+/// A name consists of text, numbers and an extension: 000003.png, frame1.jpg, left12.jpg,
+/// 000003_10.png, 1403636579763555584.png, 1403636579.763555.png. The largest series of names that
+/// differ only in their numbers is used. Everything else is skipped and named in `notes`: hidden
 /// files, previews, copies ("000003 (1).jpg").
 struct ImageNames {
   std::string folder;
   std::vector<std::string> files;  ///< names in the folder, in order
-  /// What tells the images apart, the same in both folders of a pair: "3" of left000003.png,
-  /// "1403636579.763555" of 1403636579.763555.png; the name without its ending where no number
-  /// does.
+  /// What distinguishes the images, equal in both folders of a pair: "3" for left000003.png,
+  /// "1403636579.763555" for 1403636579.763555.png; if no number does, the name without its
+  /// extension.
   std::vector<std::string> keys;
-  /// The keys as whole numbers; empty where they are none.
+  /// The keys as integers; empty if they are not integers.
   std::vector<std::uint64_t> numbers;
   std::vector<std::string> notes;
 };
 
-/// Lists the .png, .jpg and .jpeg files of a folder. Throws InputError where it cannot be read, has
-/// no image (naming the files of other kinds), has two files of one number, or two series of names
-/// (none is less than a quarter of the other), so that it is not known which is meant.
+/// Lists the .png, .jpg and .jpeg files of a folder. Throws InputError if it cannot be read, has no
+/// image (naming the files of other formats), has two files with the same number, or has two series
+/// of names so similar in size (none less than a quarter of the other) that it is unknown which one
+/// is meant.
 ImageNames ListImages(const std::string& folder);
 
-/// Throws InputError with both counts and the first names without a partner where the keys of left
-/// and right differ.
+/// Throws InputError with both counts and the first names without a partner if the keys of left and
+/// right differ.
 void CheckPairs(const ImageNames& left, const ImageNames& right);
 
-/// Names of files with this ending (".txt") that belong to images, one an image, "" where there is
-/// none: the file whose name is that of the left or right image, else the one of the same number.
-/// Nothing but exact names where the folder holds several series of names. A folder that is not
-/// there holds nothing.
+/// For each image, the name of the file with this extension (".txt") that belongs to it, or "" if
+/// there is none: the file named like the left or right image, or else the one with the same
+/// number. If the folder holds several series of names, only equal names count. A folder that does
+/// not exist is treated as empty.
 std::vector<std::string> FindPartners(const std::string& folder, const std::string& ending,
                                       const ImageNames& left, const ImageNames& right);
 
-/// Whether a folder has a .png, .jpg or .jpeg file that is not hidden.
+/// Whether a folder contains a .png, .jpg or .jpeg file that is not hidden.
 bool HoldsImages(const std::string& folder);
 
-/// Times of the images (us) where the names say them: seconds with decimals, or s, ms, us or ns
-/// since 1970, or us or ns since whatever (steps of 5000 and more are no image numbers).
+/// Times of the images (us) if the names contain them: seconds with decimals; s, ms, us or ns since
+/// 1970; or us or ns since any other origin (steps of 5000 and more are not image numbers).
 struct NamedTimes {
   std::vector<std::int64_t> utimes;
   std::string unit;

@@ -36,8 +36,7 @@ std::vector<std::size_t> RowsOfImages(const std::string& path, const std::string
   if (num_rows == num_images) {
     const std::string gaps = numbers.empty() ? "" : GapsOf(numbers);
     if (!gaps.empty() && !TimesFromNames(images)) {
-      notes->push_back(counts + " with gaps in their numbers (" + gaps +
-                       "): taken one after the other");
+      notes->push_back(counts + " with gaps in their numbers (" + gaps + "): used in order");
     }
     return OneAfterTheOther(num_rows);
   }
@@ -45,14 +44,14 @@ std::vector<std::size_t> RowsOfImages(const std::string& path, const std::string
       " '" + images.files.front() + "' .. '" + images.files.back() + "' in " + images.folder;
   if (num_rows < num_images) {
     throw InputError(counts + range + ": '" + images.files[num_rows] +
-                     "' and those after it have none; one row an image is wanted");
+                     "' and those after it have none; one row per image is expected");
   }
   const bool is_from_zero = !numbers.empty() && numbers.back() < num_rows;
   const bool is_from_one = !numbers.empty() && numbers.front() > 0 && numbers.back() == num_rows;
   if (!is_from_zero && !is_from_one) {
-    throw InputError(counts + range + ", whose names do not say which row belongs to which: the " +
+    throw InputError(counts + range + ", whose names do not tell which row belongs to which: the " +
                      "first row and '" + images.files.front() + "' may be of different images; " +
-                     "one row an image is wanted");
+                     "one row per image is expected");
   }
   const std::size_t base = is_from_zero ? 0 : 1;
   std::vector<std::size_t> rows;

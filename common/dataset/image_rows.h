@@ -10,17 +10,17 @@
 
 namespace airdos {
 
-/// Which row of a file that has one row an image, but no times, belongs to each image. As many rows
-/// as images: one after the other. More: by the number in the names, the first row being number 0,
-/// or number 1 where only that fits; what was assumed goes to `notes`.
+/// For each image, its row in a file that has one row per image but no times. With as many rows as
+/// images, in order. With more rows, by the number in the image's name, where the first row is
+/// number 0, or number 1 if only that fits; the assumption is added to `notes`.
 ///
-/// `what` says what a row holds ("times"). Throws InputError with both counts and the first image
-/// concerned where neither fits, and where there are fewer rows than images.
+/// `what` names the content of a row ("times"). Throws InputError with both counts and the first
+/// image concerned if neither fits, or if there are fewer rows than images.
 std::vector<std::size_t> RowsOfImages(const std::string& path, const std::string& what,
                                       std::size_t num_rows, const ImageNames& images,
                                       std::vector<std::string>* notes);
 
-/// "5 is missing" or "5 and 3 more are missing" where whole numbers have gaps; else empty.
+/// "5 is missing" or "5 and 3 more are missing" if integer numbers have gaps; otherwise empty.
 std::string GapsOf(const std::vector<std::uint64_t>& numbers);
 
 }  // namespace airdos

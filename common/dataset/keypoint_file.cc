@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLayoutsRead =
-    "54 numbers (COCO-18), 51 (COCO-17) and 78 (Halpe-26) a person are read, u v confidence of "
+    "54 numbers (COCO-18), 51 (COCO-17) and 78 (Halpe-26) per person are read, u v confidence of "
     "each joint";
 
 std::optional<KeypointLayout> LayoutOfCount(std::size_t count) {
@@ -28,30 +28,30 @@ std::optional<KeypointLayout> LayoutOfCount(std::size_t count) {
   return std::nullopt;
 }
 
-/// What rows of this many numbers look like, ": ..." or empty.
+/// What rows with this many numbers look like: ": ...", or empty.
 std::string ExplainCount(std::size_t count) {
   static const std::map<std::size_t, std::string> kKnown = {
       {75, "OpenPose's BODY_25: of its joints, 0-18 without 8 are COCO-18's"},
       {50, "OpenPose's BODY_25 without confidences"},
       {36, "COCO-18 without confidences"},
       {34, "COCO-17 without confidences"},
-      {52, "Halpe-26 without confidences, or COCO-17 with one number more"},
+      {52, "Halpe-26 without confidences, or COCO-17 with an extra number"},
       {408, "Halpe-136: of its joints, the first 26 are Halpe-26's"},
       {399, "COCO-WholeBody: of its joints, the first 17 are COCO-17's"},
       {411, "OpenPose's body, hands and face"},
       {48, "MPII"},
       {45, "OpenPose's MPI"},
-      {57, "COCO-18 with one joint more"},
+      {57, "COCO-18 with an extra joint"},
       {96, "Human3.6M"},
       {99, "BlazePose"},
-      {132, "BlazePose with four numbers a joint"},
+      {132, "BlazePose with four numbers per joint"},
       {63, "a hand"},
-      {55, "COCO-18 with one number more, an identity or a score"},
-      {79, "Halpe-26 with one number more, an identity or a score"},
+      {55, "COCO-18 with an extra number, an identity or a score"},
+      {79, "Halpe-26 with an extra number, an identity or a score"},
       {56, "COCO-17 with a box of five numbers"},
       {58, "COCO-18 with a box of four numbers"},
-      {3, "one joint a line"},
-      {2, "one joint a line, without confidence"}};
+      {3, "one joint per line"},
+      {2, "one joint per line, without confidence"}};
   const auto known = kKnown.find(count);
   return known == kKnown.end() ? "" : ": this looks like " + known->second;
 }
@@ -64,7 +64,7 @@ std::vector<double> ParseRow(const std::string& path, const TextLine& line) {
   }
 }
 
-/// The number of words in the first line that is none of blanks or a comment.
+/// Number of words in the first line that is neither blank nor a comment.
 std::size_t CountFirstRow(const std::string& path) {
   std::ifstream file(path);
   constexpr std::size_t kMaxLines = 100;  // of comments
@@ -105,7 +105,7 @@ KeypointFile ReadRawKeypoints(const std::string& path) {
     if (file.layout && file.layout != layout) {
       throw InputError(where + "holds a person in " + NameOf(*layout) +
                        ", the lines before it in " + NameOf(*file.layout) +
-                       "; one layout is wanted");
+                       "; all must have the same layout");
     }
     file.layout = layout;
     PersonKeypoints person(numbers.size() / 3);
@@ -136,7 +136,7 @@ std::optional<KeypointLayout> FindLayout(const std::vector<std::string>& paths) 
     if (!layout) continue;
     if (found && layout != found) {
       throw InputError(path + ": holds people in " + NameOf(*layout) + ", but " + where_found +
-                       " in " + NameOf(*found) + "; one layout a data set is wanted");
+                       " in " + NameOf(*found) + "; all of a data set must have the same layout");
     }
     if (!found) where_found = path;
     found = layout;

@@ -10,26 +10,26 @@
 
 namespace airdos {
 
-/// The people of one image.
+/// The people in one image.
 struct KeypointFile {
-  std::optional<KeypointLayout> layout;  ///< nothing where there is nobody
+  std::optional<KeypointLayout> layout;  ///< nothing if there is nobody
   std::vector<PersonKeypoints> people;
 };
 
-/// Rows of `u v confidence` of each joint of a person: 54 numbers (COCO-18), 51 (COCO-17) or 78
-/// (Halpe-26), all rows of one layout. No file, or "": nobody. Throws InputError naming file and
-/// line; other numbers of numbers are named by what they look like. Confidences are clamped to
-/// [0, 1].
+/// Reads rows of `u v confidence` for each joint of a person: 54 numbers (COCO-18), 51 (COCO-17) or
+/// 78 (Halpe-26), with the same layout in all rows. A missing file, or "", means nobody. Throws
+/// InputError naming file and line; for other counts of numbers the message says what they look
+/// like. Confidences are clamped to [0, 1].
 KeypointFile ReadKeypoints(const std::string& path);
-/// The same with the confidences as they stand there.
+/// The same, with the confidences as they are in the file.
 KeypointFile ReadRawKeypoints(const std::string& path);
 
-/// The layout that the rows of all files have; nothing where there are none, or none with a layout
-/// that is known (which ReadKeypoints() refuses). Looks at the first row of each file. Throws
-/// InputError naming both files where two layouts are mixed.
+/// The layout shared by the rows of all files; nothing if there are no rows, or none with a known
+/// layout (which ReadKeypoints() refuses). Looks only at the first row of each file. Throws
+/// InputError naming two files whose layouts differ.
 std::optional<KeypointLayout> FindLayout(const std::vector<std::string>& paths);
 
-/// "COCO-18".
+/// The layout's name, such as "COCO-18".
 std::string NameOf(KeypointLayout layout);
 
 }  // namespace airdos

@@ -22,7 +22,7 @@ KittiProjection ParseProjection(const std::string& path, const TextLine& line,
 StereoCamera MakeStereoCamera(const std::string& path, const KittiProjection& left,
                               const KittiProjection& right, std::pair<int, int> size) {
   const std::string where = path + ":" + std::to_string(right.line);
-  for (const std::size_t i : {0, 2, 5, 6}) {
+  for (const std::size_t i : {0U, 2U, 5U, 6U}) {
     if (std::abs(left.p[i] - right.p[i]) > 1e-6 * std::abs(left.p[i])) {
       throw InputError(where + ": number " + std::to_string(i + 1) + " differs from " +
                        std::to_string(left.p[i]) + " of the left camera: not a rectified pair");
@@ -36,9 +36,9 @@ StereoCamera MakeStereoCamera(const std::string& path, const KittiProjection& le
   camera.cy_px = left.p[6];
   camera.baseline_m = (left.p[3] - right.p[3]) / left.p[0];
   if (!camera.IsValid()) {
-    throw InputError(where + ": no pinhole pair for images of " + std::to_string(camera.width) +
-                     " x " + std::to_string(camera.height) + " px (focal length " +
-                     std::to_string(camera.fx_px) + " px, baseline " +
+    throw InputError(where + ": not a pinhole stereo camera for images of " +
+                     std::to_string(camera.width) + " x " + std::to_string(camera.height) +
+                     " px (focal length " + std::to_string(camera.fx_px) + " px, baseline " +
                      std::to_string(camera.baseline_m) + " m): " + WhyNoCamera(camera));
   }
   return camera;

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a file without P0 and P1 is.
+/// Explains a file without P0 and P1.
 std::string ExplainLines(const std::set<std::string>& names) {
   if (names.count("P_rect_00:") != 0) {
     return "; P_rect_00 and P_rect_01 are there (calib_cam_to_cam.txt of KITTI raw): make it with "
@@ -54,7 +54,7 @@ std::pair<KittiProjection, KittiProjection> ReadProjections(const std::string& p
   return {*left, *right};
 }
 
-/// P0 and P1 of KITTI have no offset but that of the right camera along the row.
+/// In KITTI, P0 and P1 have no offset apart from the right camera's along the row.
 void NoteColourCameras(const std::string& path, const KittiProjection& left,
                        const KittiProjection& right, std::vector<std::string>* notes) {
   constexpr double kNothing = 1e-9;
@@ -80,7 +80,7 @@ void CheckImageFolders(const std::string& folder, const FolderSequence::Contents
         "and P2: and P3: in calib.txt P0: and P1:";
   } else if (fs::is_directory(folder + "/image_00/data")) {
     remedy =
-        "; image_00/data is (KITTI raw): make image_0 and image_1 of image_00/data and "
+        "; image_00/data is (KITTI raw): make image_0 and image_1 from image_00/data and "
         "image_01/data";
   }
   throw InputError(folder + ": has a calib.txt, but " + contents.left_folder + " and " +

@@ -18,13 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder without a slash at its end, which would be a name of its own.
+/// The folder without a trailing slash, which would count as a path component.
 fs::path Plain(const std::string& folder) {
   const fs::path path = fs::absolute(folder).lexically_normal();
   return path.has_filename() ? path : path.parent_path();
 }
 
-/// The lines of a calibration file by name.
+/// The lines of a calibration file, by name.
 class CalibrationFile {
  public:
   explicit CalibrationFile(std::string path) : path_(std::move(path)) {
@@ -41,7 +41,7 @@ class CalibrationFile {
     return ParseProjection(path_, line->second, 1);
   }
 
-  /// A 3 x 3 or 3 x 4 rigid motion under one of two names; nothing where there is neither.
+  /// A 3 x 3 or 3 x 4 rigid motion under one of two names; nothing if neither is there.
   std::optional<Se3> Motion(const std::string& name, const std::string& other_name) const {
     auto found = lines_.find(name);
     if (found == lines_.end()) found = lines_.find(other_name);
@@ -64,7 +64,7 @@ class CalibrationFile {
     }
     constexpr double kRoundingOfFiles = 1e-2;
     if (!(R * R.transpose()).isIdentity(kRoundingOfFiles) || R.determinant() < 0) {
-      throw InputError(where + ": is no rotation");
+      throw InputError(where + ": is not a rotation");
     }
     motion.rotation = Eigen::Quaterniond(R).normalized();
     return motion;
@@ -77,13 +77,13 @@ class CalibrationFile {
   std::map<std::string, TextLine> lines_;
 };
 
-/// T_C_I of the header; nothing where a transform is missing.
+/// T_C_I as in the header; nothing if a transform is missing.
 std::optional<Se3> ImuInCamera(const CalibrationFile& calibration, const KittiProjection& left) {
   const std::optional<Se3> R_rect = calibration.Motion("R_rect", "R0_rect");
   const std::optional<Se3> T_cam_velo = calibration.Motion("Tr_velo_cam", "Tr_velo_to_cam");
   const std::optional<Se3> T_velo_imu = calibration.Motion("Tr_imu_velo", "Tr_imu_to_velo");
   if (!R_rect || !T_cam_velo || !T_velo_imu) return std::nullopt;
-  // P = K [I | t]: a point of the rectified camera 0 lies at p + t in this camera.
+  // P = K [I | t]: a point p in the rectified camera 0 is at p + t in this camera.
   const std::vector<double>& p = left.p;
   Se3 T_C_rect;
   T_C_rect.translation = {(p[3] - p[2] * p[11]) / p[0], (p[7] - p[6] * p[11]) / p[5], p[11]};

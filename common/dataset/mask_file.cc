@@ -19,9 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxSampleBytes = 48u << 20;  // four bytes a pixel of the largest image
+constexpr std::size_t kMaxSampleBytes = 48u << 20;  // four bytes per pixel of the largest image
 
-/// The bytes that libpng reads from.
+/// The bytes that libpng reads.
 struct ByteSource {
   const std::uint8_t* data;
   std::size_t left;
@@ -38,13 +38,13 @@ void ReadFromSource(png_structp png, png_bytep to, png_size_t num_bytes) {
 void Leave(png_structp png, png_const_charp /*message*/) { png_longjmp(png, 1); }
 void Ignore(png_structp /*png*/, png_const_charp /*message*/) {}
 
-/// Samples of one or two bytes (in this machine's order), row after row.
+/// Samples of one or two bytes (in native byte order), row by row.
 struct PngSamples {
   int bytes_per_sample = 1;
   int num_channels = 1;
   std::size_t row_bytes = 0;
   std::vector<png_byte> samples;
-  bool is_index_0_black = true;  // of a palette
+  bool is_index_0_black = true;  // of the palette
   bool has_black = false;
 };
 
@@ -59,8 +59,7 @@ void ReadPalette(png_structp png, png_infop info, PngSamples* out) {
   }
 }
 
-/// Between setjmp and the end there is no object with a destructor in this function: libpng's way
-/// out of an error is a jump.
+/// libpng reports errors by longjmp, so after setjmp this function has no object with a destructor.
 bool DecodeRows(png_structp png, png_infop info, ByteSource* source, const ImageHeader& header,
                 PngSamples* out) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
@@ -71,9 +70,9 @@ bool DecodeRows(png_structp png, png_infop info, ByteSource* source, const Image
   const auto height = static_cast<std::size_t>(header.height);
   const std::size_t pixel_bytes =
       png_get_channels(png, info) * (png_get_bit_depth(png, info) == 16 ? 2U : 1U);
-  // Before libpng makes room for a row of them.
+  // Before libpng allocates a row of them.
   if (static_cast<std::size_t>(header.width) * pixel_bytes > kMaxSampleBytes / height) return false;
-  png_set_packing(png);  // 1, 2 and 4 bits into a byte each, not scaled
+  png_set_packing(png);  // 1, 2 and 4 bits to one byte each, not scaled
   if (png_get_bit_depth(png, info) == 16) png_set_swap(png);
   const int num_passes = png_set_interlace_handling(png);
   png_read_update_info(png, info);
@@ -83,7 +82,7 @@ bool DecodeRows(png_structp png, png_infop info, ByteSource* source, const Image
   out->num_channels = png_get_channels(png, info);
   out->row_bytes = row_bytes;
   out->samples.resize(row_bytes * height);
-  // Not png_read_image(): it wants a pointer a row, eight times the samples of a narrow image.
+  // Not png_read_image(): it needs one pointer per row, eight times the samples of a narrow image.
   for (int pass = 0; pass < num_passes; ++pass) {
     for (std::size_t i = 0; i < height; ++i)
       png_read_row(png, out->samples.data() + i * row_bytes, nullptr);
@@ -116,7 +115,7 @@ cv::Mat LargestSamples(const PngSamples& png, const ImageHeader& header, int typ
   return values;
 }
 
-constexpr char kWanted[] = "; masks are wanted as PNG with 0 for the background";
+constexpr char kWanted[] = "; masks must be PNG with 0 for the background";
 
 std::string KindOf(const ImageHeader& header) {
   if (header.is_palette) return "palette";
@@ -134,7 +133,7 @@ std::string WhyNoMask(const std::uint8_t* data, std::size_t size) {
   const std::string kind = FileKindOf(data, size);
   if (kind == "empty") return "is empty";
   if (kind == "a JPEG file") {
-    return std::string("is a JPEG file, which smears the numbers of a mask") + kWanted;
+    return std::string("is a JPEG file, which blurs the values of a mask") + kWanted;
   }
   if (kind != "a PNG file") return "is " + kind + kWanted;
   const std::string why = WhyNoPicture(data, size);
@@ -143,7 +142,7 @@ std::string WhyNoMask(const std::uint8_t* data, std::size_t size) {
   if (header->has_alpha()) {
     return std::string("has an alpha channel (") +
            (header->num_channels == 4 ? "RGBA" : "grey and alpha") +
-           "), so it does not say which of its channels is the mask; save it without alpha, 0 for "
+           "), so it is not clear which of its channels is the mask; save it without alpha, 0 for "
            "the background";
   }
   return "";
@@ -155,7 +154,7 @@ PersonMask DecodePersonMask(const std::uint8_t* data, std::size_t size, const st
   const ImageHeader header = *ReadImageHeader(data, size);
   PngSamples png;
   if (!DecodePng(data, size, header, &png)) {
-    throw InputError(name + ": cannot be decoded as a mask (are bytes of it damaged?)");
+    throw InputError(name + ": cannot be decoded as a mask (is it damaged?)");
   }
   PersonMask mask;
   mask.kind = KindOf(header);
@@ -187,8 +186,8 @@ double RippledShare(const PersonMask& mask) {
   constexpr int kMaxStep = 12;
   cv::Mat values;
   mask.values.convertTo(values, CV_32S);
-  // A crest or a trough between two neighbours that are nearly as high. An edge that was smoothed,
-  // as by a change of size, goes up and down in one direction.
+  // A local maximum or minimum between two neighbours of similar value. A smoothed edge, as
+  // produced by resizing, is monotonic.
   const auto is_extreme = [](int before, int value, int after) {
     const int step_before = value - before;
     const int step_after = value - after;

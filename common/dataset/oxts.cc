@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kNumColumns = 30;
 constexpr double kEarthRadiusM = 6378137;
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kMaxLatitudeDeg = 89;  // Mercator has no pole
+constexpr double kMaxLatitudeDeg = 89;  // Mercator's projection excludes the poles
 
 Eigen::Quaterniond Turn(double angle_rad, const Eigen::Vector3d& axis) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, axis));

@@ -8,10 +8,11 @@
 
 namespace airdos {
 
-/// Poses of KITTI's inertial unit from its GPS/IMU records: T_W_I, one a row, I with x forward, y
-/// left, z up; W with x east, y north, z up, m. A row has 30 numbers; the first six are latitude,
-/// longitude (deg), altitude (m), roll, pitch, yaw (rad; yaw 0 = east, counter-clockwise).
-/// Positions are Mercator's, as in KITTI's development kit: with s = cos(latitude of the first row)
+/// Poses of KITTI's inertial unit from its GPS/IMU records: T_W_I, one per row, where I has x
+/// forward, y left, z up and W has x east, y north, z up; in m. A row has 30 numbers, of which the
+/// first six are latitude, longitude (deg), altitude (m), roll, pitch, yaw (rad; yaw 0 is east,
+/// counter-clockwise). Positions use the Mercator projection, as in KITTI's development kit: with s
+/// = cos(latitude of the first row) and r = 6378137 m,
 /// and r = 6378137 m,
 ///
 ///   x = s r pi longitude / 180,  y = s r ln(tan(pi (90 + latitude) / 360)),  z = altitude,

@@ -33,7 +33,7 @@ bool AllDigits(const std::string& text) {
                      [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-/// Splits "12.5e-3" into its digits 125 and the number of them before the decimal point (-1).
+/// Splits "12.5e-3" into its digits (125) and the number of digits before the decimal point (-1).
 bool SplitDecimal(std::string text, std::string* digits, int* num_integer_digits) {
   int exponent = 0;
   const std::size_t e = text.find_first_of("eE");
@@ -59,11 +59,11 @@ std::vector<std::uint8_t> ReadBytes(const std::string& path) {
   RequireRegularFile(path);
   std::ifstream file(path, std::ios::binary);
   std::error_code error;
-  const std::uintmax_t size = fs::file_size(path, error);  // fails for what is no plain file
+  const std::uintmax_t size = fs::file_size(path, error);  // fails for anything but a regular file
   if (!file || error) throw InputError(path + ": cannot be read");
   if (size > kMaxFileBytes) {
     throw InputError(path + ": holds " + std::to_string(size) + " bytes, at most " +
-                     std::to_string(kMaxFileBytes) + " are read");
+                     std::to_string(kMaxFileBytes) + " are allowed");
   }
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
   file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
@@ -83,7 +83,7 @@ std::pair<int, int> ReadImageSize(const std::string& path) {
   const std::vector<std::uint8_t> bytes = ReadImageFile(path);
   cv::Mat image;
   try {
-    if (ReadImageHeader(bytes.data(), bytes.size()))  // before there is room for what it claims
+    if (ReadImageHeader(bytes.data(), bytes.size()))  // before allocating what it claims
       image = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {
     image.release();
@@ -124,7 +124,7 @@ std::vector<Se3> ReadKittiPoses(const std::string& path) {
     if (m.size() != 12) {
       const char* const rows_with_times =
           m.size() == 8 ? ": these are `t tx ty tz qx qy qz qw`, read in the layout with calib.json"
-          : m.size() == 13 ? ": the first is an image number or time, leave it out"
+          : m.size() == 13 ? ": remove the first one, an image number or time"
                            : "";
       Fail(path, line.number,
            "must hold 12 numbers (3 x 4), holds " + std::to_string(m.size()) + rows_with_times);
@@ -133,7 +133,7 @@ std::vector<Se3> ReadKittiPoses(const std::string& path) {
     R << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
     constexpr double kRoundingOfFiles = 1e-2;
     if (!(R * R.transpose()).isIdentity(kRoundingOfFiles) || R.determinant() < 0) {
-      Fail(path, line.number, "columns 1-3, 5-7 and 9-11 are no rotation");
+      Fail(path, line.number, "columns 1-3, 5-7 and 9-11 are not a rotation");
     }
     poses.push_back({Eigen::Quaterniond(R).normalized(), {m[3], m[7], m[11]}});
   }

@@ -10,22 +10,22 @@
 
 namespace airdos {
 
-// The files that data set layouts are made of. Every function throws InputError naming the file and
-// the line that cannot be used.
+// Readers for the files of data sets. Every function throws InputError naming the file and the line
+// that cannot be used.
 
-/// A whole file of at most 32 MB.
+/// Reads a whole file of at most 32 MB.
 std::vector<std::uint8_t> ReadBytes(const std::string& path);
-/// A whole JPEG or PNG file of a camera's picture (WhyNoPicture() in image_file.h is empty).
+/// Reads a whole JPEG or PNG file of a camera image (WhyNoPicture() in image_file.h is empty).
 std::vector<std::uint8_t> ReadImageFile(const std::string& path);
-/// Width and height in px.
+/// Reads width and height in px.
 std::pair<int, int> ReadImageSize(const std::string& path);
 
-/// Decimal seconds ("24.359021056", "1.036e-01") in us, rounded half away from zero, without a
-/// detour over floating point: a time since 1970 keeps every microsecond. False where the text is
-/// no number or does not fit.
+/// Converts decimal seconds ("24.359021056", "1.036e-01") to us, rounding half away from zero and
+/// without floating point, so that a time since 1970 is exact to the microsecond. False if the text
+/// is not a number or out of range.
 bool ParseMicroseconds(const std::string& seconds, std::int64_t* utime);
 
-/// Rows of 3 x 4 numbers, [R t] row major.
+/// Reads rows of 3 x 4 numbers, [R t], row-major.
 std::vector<Se3> ReadKittiPoses(const std::string& path);
 
 }  // namespace airdos

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "common/calibration/calib_json.h"
@@ -10,6 +9,7 @@
 #include "common/dataset/sequence_files.h"
 #include "common/dataset/times_file.h"
 #include "common/util/error.h"
+#include "common/util/format.h"
 #include "common/util/text_file.h"
 
 namespace airdos {
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kMaxTimeDifferenceUs = 1000;  // times are written with at least ms
+constexpr std::int64_t kMaxTimeDifferenceUs = 1000;  // times have at least ms resolution
 
 StereoCamera PublicCamera() {
   StereoCamera camera;
@@ -30,7 +30,7 @@ StereoCamera PublicCamera() {
   return camera;
 }
 
-/// The camera that was asked for by name, or that of the folder.
+/// The camera requested by name, or otherwise that of the folder.
 void FillCamera(const SequenceOptions& options, FolderSequence::Contents* contents) {
   const std::string first_image = contents->left.folder + "/" + contents->left.files[0];
   const std::pair<int, int> size = ReadImageSize(first_image);
@@ -38,7 +38,7 @@ void FillCamera(const SequenceOptions& options, FolderSequence::Contents* conten
   if (options.calibration.empty()) {
     if (!fs::exists(path)) {
       throw InputError(path + ": is not there; write " + kCalibJsonForm +
-                       ", or ask for the camera of the public set with --calibration " +
+                       ", or select the camera of the public data set with --calibration " +
                        kPublicCalibration);
     }
     contents->camera = ReadCalibJson(path, size);
@@ -47,12 +47,13 @@ void FillCamera(const SequenceOptions& options, FolderSequence::Contents* conten
   contents->camera = PublicCamera();
   if (size != std::make_pair(contents->camera.width, contents->camera.height)) {
     throw InputError(first_image + ": with " + std::to_string(size.first) + " x " +
-                     std::to_string(size.second) + " px is not of the public set (640 x 360), " +
-                     "whose calibration '" + options.calibration + "' was asked for");
+                     std::to_string(size.second) +
+                     " px is not that of the public data set (640 x 360), " +
+                     "whose calibration '" + options.calibration + "' was selected");
   }
   if (fs::exists(path)) {
     contents->notes.push_back(path + ": is not used, as calibration '" + options.calibration +
-                              "' was asked for");
+                              "' was selected");
   }
 }
 
@@ -62,12 +63,12 @@ struct TimedPose {
   Se3 pose;
 };
 
-/// What a line that is not read looks like, "; ..." or empty.
+/// What an unreadable line looks like: "; ...", or empty.
 std::string ExplainPoseLine(const TextLine& line) {
   const std::string separators = ExplainSeparators(line);
   const auto num_commas = std::count(line.words[0].begin(), line.words[0].end(), ',');
   if (num_commas >= 7) {
-    return "; this is csv, as EuRoC's state_groundtruth has it (ns, position, q_w first): awk -F, "
+    return "; this is CSV as in EuRoC's state_groundtruth (ns, position, q_w first): awk -F, "
            "'!/^#/{printf \"%.6f %s %s %s %s %s %s %s\\n\",$1*1e-9,$2,$3,$4,$6,$7,$8,$5}' makes "
            "the rows";
   }
@@ -101,11 +102,11 @@ TimedPose ParsePose(const std::string& path, const TextLine& line) {
     const std::string unit = OtherTimeUnit(numbers[0], 0);
     if (!unit.empty()) {
       throw InputError(where + WrongTimeUnit(unit, "'" + line.words[0] + "'") +
-                       " (EuRoC has q_w first, too: wanted is qx qy qz qw)");
+                       " (EuRoC has q_w first, too: expected is qx qy qz qw)");
     }
     std::int64_t utime = 0;
     if (!ParseMicroseconds(line.words[0], &utime)) {
-      throw InputError(where + ": '" + line.words[0] + "' is no time in s");
+      throw InputError(where + ": '" + line.words[0] + "' is not a time in s");
     }
     row.utime = utime;
   }
@@ -125,7 +126,7 @@ std::vector<TimedPose> ReadPoses(const std::string& path) {
   return rows;
 }
 
-/// Index of the image that was taken at a time, if any.
+/// Index of the image taken at a time, if there is one.
 std::optional<std::size_t> FindImage(const std::vector<std::int64_t>& utimes, std::int64_t utime) {
   const auto it = std::lower_bound(utimes.begin(), utimes.end(), utime - kMaxTimeDifferenceUs);
   if (it == utimes.end() || *it > utime + kMaxTimeDifferenceUs) return std::nullopt;
@@ -133,10 +134,8 @@ std::optional<std::size_t> FindImage(const std::vector<std::int64_t>& utimes, st
 }
 
 std::string RangeText(std::int64_t first_us, std::int64_t last_us) {
-  char text[80];
-  std::snprintf(text, sizeof(text), "%.3f .. %.3f s", 1e-6 * static_cast<double>(first_us),
+  return Format("%.3f .. %.3f s", 1e-6 * static_cast<double>(first_us),
                 1e-6 * static_cast<double>(last_us));
-  return text;
 }
 
 void FillPosesByTime(const std::string& path, const std::vector<TimedPose>& rows,
@@ -165,7 +164,7 @@ void FillGroundTruth(FolderSequence::Contents* contents) {
   if (!fs::exists(path)) return;
   const std::vector<TimedPose> rows = ReadPoses(path);
   if (rows.empty()) {
-    contents->notes.push_back(path + ": holds no pose");
+    contents->notes.push_back(path + ": contains no pose");
     return;
   }
   std::vector<Se3> poses;
@@ -193,7 +192,7 @@ void FillGroundTruth(FolderSequence::Contents* contents) {
 bool ContradictsNed(const std::vector<Se3>& T_world_body) {
   if (T_world_body.empty()) return false;
   double sum_of_cosines = 0;
-  Eigen::Vector3d travel_body_m = Eigen::Vector3d::Zero();  // per body axis, without sign
+  Eigen::Vector3d travel_body_m = Eigen::Vector3d::Zero();  // along each body axis, absolute values
   for (std::size_t i = 0; i < T_world_body.size(); ++i) {
     const Se3& pose = T_world_body[i];
     sum_of_cosines += (pose.rotation * Eigen::Vector3d::UnitZ()).z();

@@ -26,11 +26,12 @@ Layout FindLayout(const std::string& folder) {
 void CheckCalibrationName(const std::string& folder, Layout layout, const std::string& name) {
   if (name.empty()) return;
   if (name != kPublicCalibration) {
-    throw InputError("calibration '" + name + "': is not known; known is '" + kPublicCalibration +
-                     "' (640 x 360 px), any other belongs into calib.json of the data set");
+    throw InputError("calibration '" + name + "': is unknown; the only known one is '" +
+                     kPublicCalibration +
+                     "' (640 x 360 px), any other belongs in calib.json of the data set");
   }
   if (layout != Layout::kShibuya) {
-    throw InputError(folder + ": has a calibration of its own; calibration '" + name +
+    throw InputError(folder + ": has its own calibration; calibration '" + name +
                      "' is for the TartanAir-Shibuya layout");
   }
 }
@@ -41,7 +42,7 @@ bool HasSequenceLayout(const std::string& folder) { return FindLayout(folder) !=
 
 std::unique_ptr<StereoSequence> OpenStereoSequence(const std::string& given,
                                                    const SequenceOptions& options) {
-  std::string folder = given;  // without slashes at its end, which messages would show
+  std::string folder = given;  // without trailing slashes, which messages would show
   while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
   if (!fs::is_directory(folder)) throw InputError(folder + ": is not a folder");
   const Layout layout = FindLayout(folder);

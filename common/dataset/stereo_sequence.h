@@ -14,42 +14,42 @@
 
 namespace airdos {
 
-/// One 2-D keypoint; confidence 0 = not seen.
+/// One 2-D keypoint; confidence 0 means not seen.
 struct Keypoint {
   float u_px = 0;
   float v_px = 0;
   float confidence = 0;
 };
-/// One detected person: as many keypoints as the layout says, in its order.
+/// One detected person: the keypoints of the layout, in its order.
 using PersonKeypoints = std::vector<Keypoint>;
 
-/// Axes of a ground-truth trajectory, of body and world alike.
+/// Axes of a ground-truth trajectory, for body and world.
 enum class TrajectoryAxes { kOptical, kNed, kUnknown };
 
-/// Everything a data set says about one frame. Files are handed on as bytes: whoever needs pixels
-/// decodes them.
+/// Everything a data set contains for one frame. Files are passed on as bytes and decoded by
+/// whoever needs the pixels.
 struct SequenceFrame {
   std::int64_t utime = 0;                     ///< us, capture time
   std::vector<std::uint8_t> left_image_file;  ///< a whole JPEG or PNG file
   std::vector<std::uint8_t> right_image_file;
-  std::vector<std::uint8_t>
-      person_mask_file;  ///< a whole 8-bit PNG file of the left image, 0 = background; empty: none
+  /// An 8-bit PNG file for the left image, 0 = background; empty if there is none.
+  std::vector<std::uint8_t> person_mask_file;
   KeypointLayout keypoint_layout = KeypointLayout::kCoco18;  ///< the same in every frame
-  std::vector<PersonKeypoints> keypoints_left;  ///< in no particular order; empty: nobody
+  std::vector<PersonKeypoints> keypoints_left;  ///< in no particular order; empty if nobody is seen
   std::vector<PersonKeypoints> keypoints_right;
   std::optional<Se3> ground_truth;  ///< camera in its world, in ground_truth_axes()
 };
 
-/// The files that one frame is read from, for findings that are to name them. Empty: not known.
+/// The files of one frame, for findings that name them. Empty if unknown.
 struct FrameFiles {
   std::string left_image;
   std::string right_image;
-  std::string person_mask;  ///< need not exist; the same of the next two
+  std::string person_mask;  ///< this and the next two need not exist
   std::string keypoints_left;
   std::string keypoints_right;
 };
 
-/// A recorded stereo sequence on disk. Every reader throws InputError naming the file (and line)
+/// A recorded stereo sequence on disk. Every function throws InputError naming the file (and line)
 /// that cannot be used.
 class StereoSequence {
  public:
@@ -57,34 +57,34 @@ class StereoSequence {
   virtual const StereoCamera& camera() const = 0;
   virtual std::size_t num_frames() const = 0;
   virtual TrajectoryAxes ground_truth_axes() const = 0;
-  virtual bool has_people() const = 0;  ///< whether the layout holds keypoints at all
+  virtual bool has_people() const = 0;  ///< whether the layout includes keypoints at all
   virtual SequenceFrame Load(std::size_t index) const = 0;
   virtual std::int64_t utime(std::size_t index) const { return Load(index).utime; }  ///< us
   virtual std::optional<Se3> ground_truth(std::size_t index) const {
     return Load(index).ground_truth;
   }
   virtual FrameFiles files(std::size_t /*index*/) const { return {}; }
-  /// What had to be assumed about the folder (calibration, frame rate, axes), one sentence each:
+  /// What had to be assumed about the folder (calibration, frame rate, axes), one sentence each,
   /// for the user to read.
   virtual std::vector<std::string> notes() const { return {}; }
 };
 
-/// What a user says of a folder that is not in it.
+/// What the user states about a folder that is not recorded in it.
 struct SequenceOptions {
-  /// kPublicCalibration: the camera of the public TartanAir-Shibuya set, whose folders have no
+  /// kPublicCalibration: the camera of the public TartanAir-Shibuya data set, whose folders have no
   /// calib.json. Empty: the folder's own.
   std::string calibration;
 };
 inline constexpr char kPublicCalibration[] = "tartanair-shibuya";
 
-/// Opens a folder and finds out its layout: KITTI tracking where the folder is image_02/NNNN
-/// (kitti_tracking_sequence.h), KITTI odometry where there is a calib.txt (kitti_sequence.h), else
-/// TartanAir-Shibuya where there are image_0 and image_1 (shibuya_sequence.h). Throws InputError
-/// where it has none of these, naming the folders near it that do, or what else it looks like.
+/// Opens a folder after determining its layout: KITTI tracking if the folder is image_02/NNNN
+/// (kitti_tracking_sequence.h), KITTI odometry if there is a calib.txt (kitti_sequence.h), or
+/// TartanAir-Shibuya if there are image_0 and image_1 (shibuya_sequence.h). Throws InputError if it
+/// is none of these, naming nearby folders that are, or what else the folder looks like.
 std::unique_ptr<StereoSequence> OpenStereoSequence(const std::string& folder,
                                                    const SequenceOptions& options = {});
 
-/// Whether OpenStereoSequence() knows the layout of a folder, whatever is wrong in it.
+/// Whether OpenStereoSequence() recognises the layout of a folder, even if its contents are faulty.
 bool HasSequenceLayout(const std::string& folder);
 
 }  // namespace airdos

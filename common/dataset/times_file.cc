@@ -1,26 +1,18 @@
 #include "common/dataset/times_file.h"
 
-#include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <regex>
 
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
+#include "common/util/format.h"
+#include "common/util/quantile.h"
+#include "common/util/text_file.h"
 
 namespace airdos {
 namespace {
-
-/// A word for a message: not too long, without control characters.
-std::string Shown(std::string word) {
-  constexpr std::size_t kMaxShown = 60;
-  if (word.size() > kMaxShown) word = word.substr(0, kMaxShown) + "...";
-  std::replace_if(
-      word.begin(), word.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  return word;
-}
 
 std::string Joined(const TextLine& line) {
   std::string text;
@@ -43,39 +35,42 @@ bool IsImageName(const std::string& word) {
   return word.find(".png") != std::string::npos || word.find(".jpg") != std::string::npos;
 }
 
-/// What a line looks like that is not one number.
+/// What a line looks like that is not a single number.
 std::string ExplainTimeLine(const TextLine& line) {
   double number = 0;
   if (IsDate(line.words[0])) {
-    return "a date; seconds are wanted, such as those of the day: awk '{split($2,t,\":\"); printf "
+    return "a date; seconds are expected, such as those of the day: awk '{split($2,t,\":\"); "
+           "printf "
            "\"%.6f\\n\", t[1]*3600+t[2]*60+t[3]}'";
   }
   const auto first = static_cast<unsigned char>(line.words[0][0]);
   if (std::isalpha(first) != 0 && !IsNumber(line.words[0], &number)) {
-    return "a heading or text; begin it with # or take it out, one time in s a line is wanted";
+    return "a heading or text; start it with # or remove it; one time in s per line is expected";
   }
   if (line.words[0].find(',') != std::string::npos) {
     if (IsImageName(line.words.back())) {
-      return "a line of EuRoC's data.csv (time in ns, file name); one time in s a line is wanted: "
+      return "a line of EuRoC's data.csv (time in ns, file name); one time in s per line is "
+             "expected: "
              "awk -F, '!/^#/{printf \"%.6f\\n\", $1*1e-9}'";
     }
-    return "columns with commas between, or a decimal comma; one time in s a line is wanted, with "
+    return "columns separated by commas, or a decimal comma; one time in s per line is expected, "
+           "with "
            "a decimal point";
   }
   if (line.words.size() == 2 && IsImageName(line.words[1])) {
-    return "a time and a file name; the times alone are wanted: awk '{print $1}'";
+    return "a time and a file name; only the times are expected: awk '{print $1}'";
   }
   if (line.words.size() == 2 && IsNumber(line.words[0], &number) &&
       IsNumber(line.words[1], &number)) {
-    return "two columns; the time in s alone is wanted: awk '{print $2}' where it is the second";
+    return "two columns; only the time in s is expected: awk '{print $2}' if it is the second";
   }
   if (line.words.size() == 8 || line.words.size() == 12) {
     return "a row of poses (" + std::to_string(line.words.size()) + " columns)";
   }
   if (line.words.size() > 1) {
-    return std::to_string(line.words.size()) + " columns; the time in s alone is wanted";
+    return std::to_string(line.words.size()) + " columns; only the time in s is expected";
   }
-  return "no number";
+  return "not a number";
 }
 
 struct TimeRow {
@@ -100,17 +95,11 @@ std::vector<TimeRow> ReadRows(const std::string& path) {
 void CheckUnit(const std::string& path, const std::vector<TimeRow>& rows) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < rows.size(); ++i) steps.push_back(rows[i].value - rows[i - 1].value);
-  double median = 0;
-  if (!steps.empty()) {
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    median = *middle;
-  }
+  const double median = Quantile(std::move(steps), 0.5);
   const std::string unit = rows.empty() ? "" : OtherTimeUnit(rows[0].value, median);
   if (unit.empty()) return;
-  char step[32];
-  std::snprintf(step, sizeof(step), "%.6g", median);
-  throw InputError(path + WrongTimeUnit(unit, "'" + Shown(rows[0].text) + "', steps of " + step));
+  throw InputError(path + WrongTimeUnit(unit, "'" + Shown(rows[0].text) + "', steps of " +
+                                                  Format("%.6g", median)));
 }
 
 void CheckOrder(const std::string& path, const std::vector<TimeRow>& rows,
@@ -124,7 +113,7 @@ void CheckOrder(const std::string& path, const std::vector<TimeRow>& rows,
   for (std::size_t i = 1; i < utimes.size(); ++i) {
     if (utimes[i] > utimes[i - 1]) continue;
     const std::string where = path + ":" + std::to_string(rows[i].line) + ": time '" +
-                              Shown(rows[i].text) + "' does not come after the one before, '" +
+                              Shown(rows[i].text) + "' does not come after the previous one, '" +
                               Shown(rows[i - 1].text) + "'";
     throw InputError(where + (num_repeated > 1 ? "; " + std::to_string(num_repeated) + " of " +
                                                      std::to_string(utimes.size()) +
@@ -136,7 +125,7 @@ void CheckOrder(const std::string& path, const std::vector<TimeRow>& rows,
 }  // namespace
 
 std::string OtherTimeUnit(double first, double median_step) {
-  // 1e11 s after 1970 is the year 5138; in ms it is 1973.
+  // 1e11 s after 1970 is the year 5138; as ms it is 1973.
   if (first > 1e17) return "ns";
   if (first > 1e14) return "us";
   if (first > 1e11) return "ms";
@@ -151,17 +140,17 @@ std::string OtherTimeUnit(double first, double median_step) {
 std::string WrongTimeUnit(const std::string& unit, const std::string& shown) {
   const std::string factor = unit == "ms" ? "1e-3" : unit == "us" ? "1e-6" : "1e-9";
   return ": the times are in " + unit + " (" + shown +
-         "), wanted in s; awk '{$1=sprintf(\"%.6f\"," + " $1*" + factor +
+         "), expected in s; awk '{$1=sprintf(\"%.6f\"," + " $1*" + factor +
          "); print}' converts them";
 }
 
 std::string ExplainSeparators(const TextLine& line) {
   for (const std::string& word : line.words) {
     if (word.find(',') != std::string::npos) {
-      return "; numbers are wanted with blanks between them, not commas";
+      return "; numbers must be separated by blanks, not commas";
     }
     if (word.find(';') != std::string::npos) {
-      return "; numbers are wanted with blanks between them, not semicolons";
+      return "; numbers must be separated by blanks, not semicolons";
     }
   }
   return "";
@@ -175,7 +164,7 @@ std::vector<std::int64_t> ReadTimes(const std::string& path) {
     std::int64_t utime = 0;
     if (!ParseMicroseconds(row.text, &utime)) {
       throw InputError(path + ":" + std::to_string(row.line) + ": '" + Shown(row.text) +
-                       "' is no time in s");
+                       "' is not a time in s");
     }
     utimes.push_back(utime);
   }

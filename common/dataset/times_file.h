@@ -9,19 +9,19 @@
 
 namespace airdos {
 
-/// One time (s) a line, strictly increasing; in us. Throws InputError naming the file, the line and
-/// what it looks like: times in ms, us or ns, dates, lines of EuRoC's data.csv, several columns,
-/// times that repeat or go back.
+/// Reads one time (s) per line, strictly increasing; returns us. Throws InputError naming the file,
+/// the line and what it looks like: times in ms, us or ns, dates, lines of EuRoC's data.csv,
+/// several columns, times that repeat or go back.
 std::vector<std::int64_t> ReadTimes(const std::string& path);
 
-/// "ms", "us" or "ns" where the first of several times and the step between them (0: not known)
-/// cannot be s, but would be a camera's in that unit. Else empty.
+/// "ms", "us" or "ns" if the first of several times and their median step (0 if unknown) are
+/// implausible in s but plausible for a camera in that unit; otherwise empty.
 std::string OtherTimeUnit(double first, double median_step);
 
 /// ": the times are in ns (...), wanted in s; ..." with a command that converts them.
 std::string WrongTimeUnit(const std::string& unit, const std::string& shown);
 
-/// What else than numbers with blanks between them a line is, and the remedy: "; ..." or empty.
+/// What a line is, and the remedy, if it is not numbers separated by blanks: "; ...", or empty.
 std::string ExplainSeparators(const TextLine& line);
 
 }  // namespace airdos

@@ -7,6 +7,7 @@
 
 namespace airdos {
 
+/// What the estimate is aligned with before its positions are compared.
 enum class Alignment { kNone, kSe3, kSim3 };
 
 /// p_ground_truth = scale * rotation * p_estimate + translation_m
@@ -17,8 +18,8 @@ struct Similarity {
 };
 
 /// The transform of the estimate's world that brings its positions closest to the ground truth's in
-/// the sense of least squares (Umeyama 1991), with scale for kSim3. The scale stays 1 where the
-/// estimate never moves.
+/// the least-squares sense (Umeyama 1991), with scale for kSim3. The scale is 1 if the estimate
+/// never moves.
 Similarity ComputeAlignment(const MatchedTrajectories& matched, Alignment alignment);
 
 /// The estimate in the ground truth's world.

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
+
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -52,13 +53,7 @@ std::string TickText(double value, double step) {
   const int digits = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
   constexpr int kMostDigits = 5;
   const double shown = std::abs(value) < 1e-9 * step ? 0.0 : value;
-  char text[32];
-  if (digits > kMostDigits) {
-    std::snprintf(text, sizeof text, "%.3g", shown);
-  } else {
-    std::snprintf(text, sizeof text, "%.*f", digits, shown);
-  }
-  return text;
+  return digits > kMostDigits ? Format("%.3g", shown) : Format("%.*f", digits, shown);
 }
 
 /// Maps the units of the axes to pixels of the picture.
@@ -110,7 +105,7 @@ Frame MakeFrame(const Chart& chart, const cv::Rect& area_px) {
   return frame;
 }
 
-/// The chart's own ticks where it has any (those in the range), else round numbers.
+/// The chart's named ticks within the range, if it has any; otherwise round numbers.
 std::vector<NamedTick> TicksOf(const std::vector<NamedTick>& named, const Range& range) {
   constexpr int kAboutSoMany = 7;
   std::vector<NamedTick> ticks;
@@ -151,7 +146,7 @@ std::vector<const ChartSeries*> NamedSeries(const Chart& chart) {
   return named;
 }
 
-/// In the corner of the chart's area that holds the fewest points.
+/// Drawn in the corner of the chart area with the fewest points.
 void DrawLegend(const Chart& chart, const Frame& frame, cv::Mat* picture) {
   const std::vector<const ChartSeries*> named = NamedSeries(chart);
   int width = 0;

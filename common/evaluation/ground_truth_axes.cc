@@ -6,9 +6,9 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 
 #include "common/geometry/se3.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -25,7 +25,7 @@ Eigen::Vector3d RotationVector(const TrajectoryPose& pose) {
   return LogSo3(Eigen::Quaterniond(pose.rotation).normalized());
 }
 
-/// Motions in body axes, one a column: rotation vectors and displacements.
+/// Motions in body axes, one per column: rotation vectors and displacements.
 struct Motions {
   Eigen::Matrix3Xd rotation;
   Eigen::Matrix3Xd translation;
@@ -46,7 +46,7 @@ double Rms(const Eigen::Matrix3Xd& vectors) {
   return vectors.cols() > 0 ? vectors.norm() / std::sqrt(static_cast<double>(vectors.cols())) : 0;
 }
 
-/// Cosine between two series of vectors.
+/// Cosine of the angle between two series of vectors.
 double Cosine(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
   const double norm = a.norm() * b.norm();
   return norm > 0 ? a.cwiseProduct(b).sum() / norm : 0;
@@ -63,7 +63,8 @@ double AgreementOf(const Motions& estimate, const Motions& truth, const GroundTr
   return uses.uses_rotation && uses.uses_translation ? 0.5 * sum : sum;
 }
 
-/// The motions of both, and whether the ground truth moves enough to tell something by them.
+/// The motions of both trajectories, and whether the ground truth moves enough to draw conclusions
+/// from them.
 struct ComparedMotions {
   Motions estimate;
   Motions truth;
@@ -80,7 +81,7 @@ ComparedMotions Compare(const MatchedTrajectories& matched) {
   return compared;
 }
 
-/// The axis that "y", "+y" or "-y" names.
+/// The axis named by "y", "+y" or "-y".
 std::optional<Eigen::Vector3d> ParseAxis(std::string text) {
   const double sign = !text.empty() && text[0] == '-' ? -1 : 1;
   if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.erase(0, 1);
@@ -126,7 +127,7 @@ std::optional<GroundTruthAxes> GroundTruthAxes::Parse(const std::string& text) {
     S.col(i) = *axis;
     small.erase(0, comma + 1);
   }
-  if (std::abs(S.determinant()) < 0.5) return std::nullopt;  // an axis twice
+  if (std::abs(S.determinant()) < 0.5) return std::nullopt;  // names an axis twice
   return GroundTruthAxes(S);
 }
 
@@ -193,14 +194,11 @@ std::string AxesDecision::Explain() const {
                            : uses_rotation                   ? "rotations"
                            : uses_translation                ? "displacements"
                                                              : "motions (there are hardly any)";
-  char text[300];
-  std::snprintf(text, sizeof text,
-                "%s of estimate and ground truth in body axes agree by %.3f if it is %s (%s), by "
-                "%.3f at most in other axes%s (1 = same, 0 = unrelated)",
-                what, agreement, axes.Name().c_str(),
-                axes.is_right_handed() ? "right-handed" : "left-handed", best_other,
-                alternatives.empty() ? "" : " but the alternatives named");
-  return text;
+  return Format(
+      "%s of estimate and ground truth in body axes agree by %.3f if it is %s (%s), by "
+      "%.3f at most in other axes%s (1 = same, 0 = unrelated)",
+      what, agreement, axes.Name().c_str(), axes.is_right_handed() ? "right-handed" : "left-handed",
+      best_other, alternatives.empty() ? "" : " but the alternatives named");
 }
 
 }  // namespace airdos

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <exception>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -11,8 +11,10 @@
 #include <utility>
 
 #include "common/util/error.h"
+#include "common/util/format.h"
 #include "common/util/input_file.h"
 #include "common/util/json_file.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
@@ -22,7 +24,7 @@ using nlohmann::json;
 constexpr const char* kFigureKeys[kNumRunFigures] = {"ate_m", "rpe_median_m", "rpe_rmse_m",
                                                      "lost_percent"};
 
-/// For the order: no cap comes last.
+/// Sort key: no cap comes last.
 int CapOrder(const std::optional<int>& cap) {
   return cap.value_or(std::numeric_limits<int>::max());
 }
@@ -44,18 +46,7 @@ CappedRun ParseRun(const json& object) {
   return run;
 }
 
-/// Of sorted values, `share` of the way from the first to the last.
-double Quantile(const std::vector<double>& sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const std::size_t below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  const double part = place - static_cast<double>(below);
-  if (part == 0) return sorted[below];  // also keeps infinity out of the product
-  return (1 - part) * sorted[below] + part * sorted[above];
-}
-
-Spread SpreadOf(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
+Spread SpreadOf(const std::vector<double>& values) {
   return {Quantile(values, 0.5), Quantile(values, 0.25), Quantile(values, 0.75)};
 }
 
@@ -64,7 +55,7 @@ double Ratio(double on, double mask_only) {
   return on > 0 ? std::numeric_limits<double>::infinity() : 1;
 }
 
-using Pair = std::array<const CappedRun*, 2>;  // mask_only, on
+using Pair = std::array<const CappedRun*, 2>;  // {mask_only, on}
 
 HelpPoint MakePoint(const std::optional<int>& cap, const std::vector<Pair>& pairs) {
   HelpPoint point;
@@ -89,12 +80,6 @@ HelpPoint MakePoint(const std::optional<int>& cap, const std::vector<Pair>& pair
     point.ratio_of_sums[figure] = Ratio(sum_on, sum_mask_only);
   }
   return point;
-}
-
-std::string Format(const char* format, double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
 }
 
 std::string RunsTable(const HelpCurve& curve) {

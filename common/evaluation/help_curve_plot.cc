@@ -2,22 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <string>
 
 #include "common/evaluation/chart.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
 
 const cv::Scalar kMaskOnlyColor(40, 40, 200);
 const cv::Scalar kOnColor(200, 90, 0);
-constexpr double kDotsBeside = 0.08;  // of the distance between two caps
+constexpr double kDotsBeside = 0.08;  // relative to the distance between two caps
 
 using ToAxis = std::function<double(double)>;
 
-/// The runs as dots, the quartiles thin, the median thick.
+/// The runs as dots, the quartiles as thin lines, the median as a thick one.
 void AddMode(const HelpCurve& curve, RunFigure run_figure, bool is_on, const ToAxis& to_axis,
              Chart* chart) {
   const auto figure = static_cast<std::size_t>(run_figure);
@@ -43,7 +43,7 @@ void AddMode(const HelpCurve& curve, RunFigure run_figure, bool is_on, const ToA
 
 Chart MakeChart(const HelpCurve& curve, RunFigure figure, const ToAxis& to_axis) {
   Chart chart;
-  chart.x_label = "static features a frame, at most";
+  chart.x_label = "static features per frame, at most";
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
     const auto& cap = curve.points[i].cap;
     chart.x_ticks.push_back({static_cast<double>(i), cap ? std::to_string(*cap) : "uncapped"});
@@ -54,7 +54,7 @@ Chart MakeChart(const HelpCurve& curve, RunFigure figure, const ToAxis& to_axis)
 }
 
 double LogarithmOfMm(double value_m) {
-  constexpr double kLeastMm = 0.01;  // a perfect run has to stay on the paper
+  constexpr double kLeastMm = 0.01;  // keeps a perfect run on the logarithmic axis
   return std::log10(std::max(1000 * value_m, kLeastMm));
 }
 
@@ -69,9 +69,7 @@ cv::Mat DrawHelpCurve(const HelpCurve& curve) {
   rpe.y_label = "mm, logarithmic";
   for (const double mm :
        {0.01, 0.1, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0}) {
-    char name[20];
-    std::snprintf(name, sizeof name, "%g", mm);
-    rpe.y_ticks.push_back({std::log10(mm), name});
+    rpe.y_ticks.push_back({std::log10(mm), Format("%g", mm)});
   }
   DrawChart(rpe, {0, 0, kPanelWidth, kHeight}, &picture);
   Chart lost = MakeChart(curve, RunFigure::kLost, [](double percent) { return percent; });

@@ -7,9 +7,9 @@
 
 namespace airdos {
 
-/// Two panels over the caps, evenly spaced: median RPE-T of the runs (logarithmic) and the share of
-/// frames lost. For each mode the median over the sequences (thick), the quartiles (thin) and every
-/// sequence (dots). 8-bit BGR.
+/// Draws two panels over the caps, which are evenly spaced: median RPE-T of the runs (logarithmic)
+/// and the share of lost frames. Each mode has the median over the sequences (thick), the quartiles
+/// (thin) and every sequence (dots). 8-bit BGR.
 cv::Mat DrawHelpCurve(const HelpCurve& curve);
 
 }  // namespace airdos

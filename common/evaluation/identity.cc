@@ -39,7 +39,8 @@ IdentityScore IdentityEvaluator::Score() const {
     for (const auto& [track, frames] : tracks) most = std::max(most, frames);
   }
   if (people_frames + track_frames == 0) return score;
-  // Most frames explained = least cost, where a pair saves the frames it explains.
+  // Maximises the frames explained by minimising the cost: a pair reduces it by the frames it
+  // explains.
   Eigen::MatrixXd cost =
       Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(frames_of_person_.size()),
                                 static_cast<Eigen::Index>(frames_of_track_.size()), most + 1.0);

@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <exception>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -16,22 +17,22 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::int64_t kMaxId = std::int64_t{1} << 53;  // of the whole numbers of JSON
-constexpr std::size_t kMaxUnpackedBytes = 256u << 20;   // of some 7,000 frames
+constexpr std::int64_t kMaxId = std::int64_t{1} << 53;  // limit of exact integers in JSON
+constexpr std::size_t kMaxUnpackedBytes = 256u << 20;   // about 7,000 frames
 
 Joints ParseJoints(const json& object) {
   Joints joints;
   for (const auto& [key, place] : object.items()) {
     const int id = std::stoi(key);
-    if (id < 0) throw InputError("'" + key + "' is no joint");
-    if (id >= kNumJoints) continue;  // of the face
+    if (id < 0) throw InputError("'" + key + "' is not a joint");
+    if (id >= kNumJoints) continue;  // a point of the face
     joints[id] = Eigen::Vector3d(place.at(0).get<double>(), place.at(1).get<double>(),
                                  place.at(2).get<double>());
   }
   return joints;
 }
 
-/// A file, unpacked if it is of gzip.
+/// Reads a file, decompressing it if it is gzipped.
 std::string ReadUnpacked(const std::string& path) {
   RequireRegularFile(path);
   const gzFile file = gzopen(path.c_str(), "rb");
@@ -43,12 +44,12 @@ std::string ReadUnpacked(const std::string& path) {
     text.append(buffer, static_cast<std::size_t>(size));
     if (text.size() > kMaxUnpackedBytes) {
       gzclose(file);
-      throw InputError(path + ": unpacks to more than " + std::to_string(kMaxUnpackedBytes) +
+      throw InputError(path + ": decompresses to more than " + std::to_string(kMaxUnpackedBytes) +
                        " bytes");
     }
   }
   gzclose(file);
-  if (size < 0) throw InputError(path + ": cannot be unpacked");
+  if (size < 0) throw InputError(path + ": cannot be decompressed");
   return text;
 }
 
@@ -77,7 +78,8 @@ std::vector<PersonState> ReadPeople(const std::string& path) {
       state.measured_W = ParseJoints(object.at("measured"));
       for (const auto& [key, length_m] : object.at("segment_lengths_m").items()) {
         const int segment = std::stoi(key);
-        if (segment < 0 || segment >= kNumSegments) throw InputError("'" + key + "' is no segment");
+        if (segment < 0 || segment >= kNumSegments)
+          throw InputError("'" + key + "' is not a segment");
         state.segment_length_m[segment] = length_m;
       }
       states.push_back(std::move(state));

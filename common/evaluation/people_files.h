@@ -10,36 +10,37 @@
 
 namespace airdos {
 
-using Joints = std::map<int, Eigen::Vector3d>;  ///< by joint id (0..13), m
+using Joints = std::map<int, Eigen::Vector3d>;  ///< by joint number (0..13), m
 
-/// One estimated person at one frame.
+/// One estimated person in one frame.
 struct PersonState {
   double time_s = 0;
   std::int64_t track = 0;
   Joints joints_W;                         ///< optimized, in the estimate's world
   Joints measured_W;                       ///< as triangulated
-  std::map<int, double> segment_length_m;  ///< by index into kSegments, as known at this frame
+  std::map<int, double> segment_length_m;  ///< by index into kSegments, as estimated at this frame
 };
 
-/// One true person at one frame.
+/// One true person in one frame.
 struct TruePersonState {
   Joints joints;  ///< in the ground truth's world
-  /// Joints (of all 18) that the left and right image show; nothing where the file does not say.
+  /// Number of joints (of all 18) visible in the left and the right image; nothing if the file does
+  /// not tell.
   std::optional<int> num_visible_left;
   std::optional<int> num_visible_right;
 };
 
-/// The true people of one frame, by identity.
+/// The true people in one frame, by identity.
 struct TruePeople {
   double time_s = 0;
   std::map<std::int64_t, TruePersonState> people;
 };
 
-/// people.jsonl as map_recorder exports it. Throws InputError naming file and line.
+/// Reads people.jsonl as exported by map_recorder. Throws InputError naming file and line.
 std::vector<PersonState> ReadPeople(const std::string& path);
-/// joints_gt.json, also compressed with gzip: [{"t", "humans": [{"id", "joints_w": {id: [x, y, z]},
-/// "vis0": [18 numbers], "vis1"}]}]; a joint is visible where the number is above 0. Throws
-/// InputError naming the file.
+/// Reads joints_gt.json, possibly gzipped: [{"t", "humans": [{"id", "joints_w": {id: [x, y, z]},
+/// "vis0": [18 numbers], "vis1"}]}]. A joint is visible if its number is above 0. Throws InputError
+/// naming the file.
 std::vector<TruePeople> ReadTruePeople(const std::string& path);
 
 }  // namespace airdos

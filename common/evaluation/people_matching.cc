@@ -11,12 +11,12 @@
 namespace airdos {
 namespace {
 
-constexpr double kMaxDistance = 0.15;       // of the height
-constexpr double kMaxJointDistance = 0.25;  // so that outliers do not decide
+constexpr double kMaxDistance = 0.15;       // relative to the height
+constexpr double kMaxJointDistance = 0.25;  // limits the influence of outliers
 constexpr double kMinJointDepthM = 0.2;
 
-/// Mean distance of the directions of shared joints, in heights of the true person; infinite where
-/// there is no such joint.
+/// Mean distance between the directions of shared joints, in heights of the true person; infinite
+/// if there are none.
 double Distance(const Joints& measured_C, const Joints& truth_C, double true_depth_m,
                 SideSwap swap) {
   double sum = 0;

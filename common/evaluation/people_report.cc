@@ -15,7 +15,7 @@ namespace {
 constexpr double kSameTimeS = 0.001;
 constexpr double kGoodLengthPercent = 5;
 
-/// Index of the matched poses at a time, if any.
+/// Index of the matched poses at a given time, if any.
 std::optional<std::size_t> FindCamera(const MatchedTrajectories& cameras, double time_s) {
   for (std::size_t i = 0; i < cameras.estimate.size(); ++i) {
     if (std::abs(cameras.estimate[i].time_s - time_s) <= kSameTimeS) return i;
@@ -25,7 +25,7 @@ std::optional<std::size_t> FindCamera(const MatchedTrajectories& cameras, double
 
 std::size_t DepthBand(double depth_m) { return depth_m < 6 ? 0 : depth_m < 12 ? 1 : 2; }
 
-/// Errors (m) of joints before and after the optimization, as they are collected.
+/// Lists of joint errors (m) before and after the optimization.
 struct JointErrorLists {
   std::vector<double> measured_m;
   std::vector<double> optimized_m;
@@ -51,15 +51,15 @@ LengthErrors SummaryOf(const std::vector<double>& signed_percent) {
   return errors;
 }
 
-/// What was seen of one person by one track.
+/// What a track saw of a person.
 struct PersonOnTrack {
   int num_frames = 0;
   double least_depth_m = 1e9;
-  std::map<int, double> length_m;  ///< estimated, at the last frame
+  std::map<int, double> length_m;  ///< estimate at the last frame
   std::array<std::vector<double>, kNumSegments> true_length_m;
 };
 
-/// Collects errors frame by frame.
+/// Accumulates errors frame by frame.
 class PeopleEvaluator {
  public:
   void AddFrame(const std::vector<const PersonState*>& states, const TruePeople& truth,
@@ -75,7 +75,7 @@ class PeopleEvaluator {
   IdentityEvaluator identity_;
   JointErrorLists all_;
   std::array<JointErrorLists, kNumDepthBands> by_depth_;
-  std::map<std::pair<std::int64_t, std::int64_t>, PersonOnTrack> lengths_;  // person, track
+  std::map<std::pair<std::int64_t, std::int64_t>, PersonOnTrack> lengths_;  // (person, track)
 };
 
 void PeopleEvaluator::AddFrame(const std::vector<const PersonState*>& states,

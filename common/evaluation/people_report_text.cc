@@ -1,11 +1,10 @@
-// People's errors as text and JSON.
+// Formats people's errors as text and JSON.
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "common/evaluation/people_matching.h"
 #include "common/evaluation/people_report.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -26,16 +25,6 @@ constexpr std::array<const char*, kNumSegments> kSegmentNames = {"neck - right s
                                                                  "left thigh",
                                                                  "left shin",
                                                                  "neck - nose"};
-
-std::string Format(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string Format(const char* format, ...) {
-  char text[400];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
 
 std::string JointRow(const char* name, const JointErrors& errors) {
   return Format("  %-24s %8zu %9.4f %9.4f %6.1f %% %9.4f %9.4f %6.1f %%\n", name,
@@ -82,7 +71,7 @@ std::string ToTable(const PeopleReport& r) {
       r.num_to_be_seen, r.num_seen);
   const double num_people = std::max(r.identity.num_people, 1);
   text +=
-      Format("identity: %d switches, %.2f a person; IDF1 %.3f (precision %.3f, recall %.3f)\n\n",
+      Format("identity: %d switches, %.2f per person; IDF1 %.3f (precision %.3f, recall %.3f)\n\n",
              r.identity.num_switches, r.identity.num_switches / num_people, r.identity.idf1,
              r.identity.id_precision, r.identity.id_recall);
   text += Format("  %-24s %8s %9s %9s %8s %9s %9s %8s\n", "error of the joints (m)", "joints",
@@ -91,7 +80,7 @@ std::string ToTable(const PeopleReport& r) {
   for (std::size_t i = 0; i < kNumDepthBands; ++i) {
     text += JointRow(kDepthBandNames[i], r.joint_errors_by_depth[i]);
   }
-  text += Format("\n  %-24s %8s %9s %9s %9s %9s\n", "error of lengths (%)", "lengths", "median",
+  text += Format("\n  %-24s %8s %9s %9s %9s %9s\n", "error of the lengths (%)", "lengths", "median",
                  "mean", "bias", "within 5");
   text += LengthRow("all segments", r.lengths);
   for (std::size_t i = 0; i < kNumDepthBands; ++i) {

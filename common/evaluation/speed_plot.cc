@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <map>
@@ -10,6 +9,7 @@
 
 #include "common/evaluation/chart.h"
 #include "common/evaluation/speed_report.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -26,7 +26,7 @@ std::vector<NamedTick> LogarithmicTicks(const std::set<int>& values) {
   return ticks;
 }
 
-// ms against one of the figures of each solve, a line for each solver and kind of start.
+// ms over one of the figures of each solve, with one line per solver and kind of start.
 Chart GrowthChart(const std::vector<SolveTime>& solves, int SolveTime::*figure) {
   std::map<std::string, ChartSeries> series;
   std::set<int> values;
@@ -39,9 +39,7 @@ Chart GrowthChart(const std::vector<SolveTime>& solves, int SolveTime::*figure) 
   chart.y_label = "ms, logarithmic";
   chart.x_ticks = LogarithmicTicks(values);
   for (const double ms : {0.1, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0}) {
-    char name[20];
-    std::snprintf(name, sizeof name, "%g", ms);
-    chart.y_ticks.push_back({Logarithm(ms), name});
+    chart.y_ticks.push_back({Logarithm(ms), Format("%g", ms)});
   }
   for (auto& [name, line] : series) {
     line.name = name;
@@ -55,7 +53,7 @@ Chart GrowthChart(const std::vector<SolveTime>& solves, int SolveTime::*figure) 
 
 Chart ProcessChart(const std::vector<ChainSpeed>& chains) {
   Chart chart;
-  chart.title = "CPU a frame, median, by sequence";
+  chart.title = "CPU per frame, median, by sequence";
   chart.x_label = "sequence, in the table's order";
   chart.y_label = "ms";
   chart.starts_at_zero = true;
@@ -68,7 +66,7 @@ Chart ProcessChart(const std::vector<ChainSpeed>& chains) {
   }
   for (auto& [name, line] : series) {
     line.name = name;
-    line.color_bgr = kColors[(chart.series.size() / 2) % kColors.size()];  // dots have the same
+    line.color_bgr = kColors[(chart.series.size() / 2) % kColors.size()];  // as its dots
     ChartSeries dots = line;
     dots.name.clear();
     dots.is_dots = true;

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
+#include <exception>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include <tuple>
 
 #include "common/util/error.h"
+#include "common/util/format.h"
 #include "common/util/input_file.h"
 #include "common/util/json_file.h"
 
@@ -86,15 +86,6 @@ std::ifstream OpenText(const std::string& path) {
   return file;
 }
 
-__attribute__((format(printf, 1, 2))) std::string Format(const char* format, ...) {
-  char text[200];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
-
 std::string ToText(const std::optional<double>& value) {
   return value ? Format("%.1f", *value) : std::string("-");
 }
@@ -129,7 +120,7 @@ std::string ChainTable(const std::vector<ChainSpeed>& chains) {
   return text;
 }
 
-// Where `solve` was measured, and each solver's figure for that.
+// The conditions under which `solve` was measured, with each solver's figure for them.
 using SolveKey = std::tuple<std::string, int, int, bool>;
 std::map<SolveKey, std::map<std::string, SolveTime>> BySetting(
     const std::vector<SolveTime>& solves) {
@@ -149,7 +140,7 @@ std::string SolveTable(const std::vector<SolveTime>& solves, bool is_paper) {
   std::string text = is_paper ? "\n| paper's problem |" : "\n| people | window | start |";
   std::string rule = is_paper ? "|---|" : "|---|---|---|";
   for (const std::string& solver : solvers) {
-    text += " " + solver + ": ms, ms an iteration |";
+    text += " " + solver + ": ms, ms per iteration |";
     rule += "---|";
   }
   text += "\n" + rule + "\n";
@@ -198,8 +189,8 @@ std::vector<SolveTime> ReadSolveTimes(const std::string& path) {
     }
   } catch (const InputError& error) {
     throw InputError(path + ": " + error.what());
-  } catch (const std::exception& error) {  // of the JSON, or of a number in a name
-    throw InputError(path + ": is no report of Google Benchmark: " + error.what());
+  } catch (const std::exception& error) {  // from the JSON, or from a number in a name
+    throw InputError(path + ": is not a Google Benchmark report: " + error.what());
   }
   return solves;
 }

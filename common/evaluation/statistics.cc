@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/util/quantile.h"
+
 namespace airdos {
 
 Statistics ComputeStatistics(std::vector<double> values) {
@@ -25,9 +27,7 @@ Statistics ComputeStatistics(std::vector<double> values) {
   }
   statistics.std = std::sqrt(sum_of_deviations / n);
   statistics.max = values.back();
-  const std::size_t middle = values.size() / 2;
-  statistics.median =
-      values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+  statistics.median = Quantile(std::move(values), 0.5);
   return statistics;
 }
 

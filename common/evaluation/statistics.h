@@ -6,17 +6,17 @@
 
 namespace airdos {
 
-/// Of a set of non-negative errors, in their unit.
+/// Statistics of a set of non-negative errors, in their unit.
 struct Statistics {
   std::size_t count = 0;
   double rmse = 0;
   double mean = 0;
-  double median = 0;  ///< mean of the two in the middle where the count is even
+  double median = 0;  ///< mean of the two middle ones if the count is even
   double max = 0;
-  double std = 0;  ///< divided by the count
+  double std = 0;  ///< normalised by the count
 };
 
-/// All zero where there are no values.
+/// All zero if there are no values.
 Statistics ComputeStatistics(std::vector<double> values);
 
 }  // namespace airdos

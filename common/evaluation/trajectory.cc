@@ -9,8 +9,7 @@
 namespace airdos {
 namespace {
 
-/// The pose that is nearest in time (times never decrease); the earlier one of two that are as
-/// near.
+/// The pose nearest in time (times never decrease); the earlier one if two are equally near.
 const TrajectoryPose& Nearest(const std::vector<TrajectoryPose>& poses, double time_s) {
   const auto after =
       std::lower_bound(poses.begin(), poses.end(), time_s,
@@ -26,7 +25,7 @@ void CheckRowsAgree(const Trajectory& estimate, const Trajectory& ground_truth) 
   throw InputError(
       NameOf("estimate", estimate) + ": has " + std::to_string(estimate.num_rows()) + " rows, " +
       NameOf("ground truth", ground_truth) + " has " + std::to_string(ground_truth.num_rows()) +
-      ": without times row k belongs to row k only where the counts agree; give a trajectory with "
+      ": without times row k belongs to row k only if the counts agree; provide a trajectory with "
       "times (TUM), the times of each with --times, or rows of nan for the frames without a pose");
 }
 
@@ -61,7 +60,7 @@ MatchedTrajectories Associate(const Trajectory& estimate, const Trajectory& grou
   }
   if (!estimate.has_times) {
     CheckRowsAgree(estimate, ground_truth);
-    max_time_difference_s = 0;  // rows by number: some may have no pose
+    max_time_difference_s = 0;  // by row number: some rows may have no pose
   }
   const bool is_truth_longer = ground_truth.poses.size() > estimate.poses.size();
   const std::vector<TrajectoryPose>& shorter =

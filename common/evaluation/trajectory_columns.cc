@@ -23,7 +23,7 @@ std::string SmallLetters(std::string text) {
   return text;
 }
 
-/// Between n separators lie n + 1 fields, some perhaps empty.
+/// n separators delimit n + 1 fields, some of which may be empty.
 std::vector<std::string> SplitAt(char separator, const std::string& text) {
   std::vector<std::string> fields;
   std::size_t begin = 0;
@@ -43,7 +43,7 @@ std::vector<std::string> SplitAtBlanks(const std::string& text) {
   return fields;
 }
 
-/// "1305031102,1604": a number with a comma where a point belongs.
+/// Whether it is like "1305031102,1604": a number with a decimal comma.
 bool HasDecimalComma(const std::string& field) {
   const std::size_t comma = field.find(',');
   if (comma == 0 || comma == std::string::npos || comma + 1 == field.size()) return false;
@@ -53,7 +53,7 @@ bool HasDecimalComma(const std::string& field) {
          std::isdigit(static_cast<unsigned char>(field[comma - 1]));
 }
 
-/// The names of a heading, one a column, without units ("[m]"), in small letters.
+/// The names in a heading, one per column, without units ("[m]"), in lower case.
 std::vector<std::string> NamesOf(const std::string& heading) {
   const char separator = heading.find(',') != std::string::npos   ? ','
                          : heading.find(';') != std::string::npos ? ';'
@@ -85,7 +85,7 @@ bool IsTimeName(const std::string& name) {
          StartsWith(name, "utime") || EndsWith(name, "stamp");
 }
 
-/// What comes before the axis in "q_RS_w", "tx", "pose.position.x", without separators at its end.
+/// The part before the axis in "q_RS_w", "tx", "pose.position.x", without trailing separators.
 std::string StemOf(const std::string& name) {
   std::string stem = name.substr(0, name.size() - 1);
   while (!stem.empty() && std::string("._- ").find(stem.back()) != std::string::npos) {
@@ -104,7 +104,7 @@ bool IsQuaternionStem(const std::string& stem) {
          EndsWithAnyOf(stem, {"orientation", "rotation", "quat", "quaternion", "rot"});
 }
 
-/// The columns that a heading names, if it names a time and a position.
+/// The columns named by a heading, if it names a time and a position.
 std::optional<TrajectoryColumns> FromHeading(const std::string& heading, std::size_t num_columns) {
   const std::vector<std::string> names = NamesOf(heading);
   if (names.size() != num_columns) return std::nullopt;
@@ -172,7 +172,7 @@ bool EndsWithRow0001(const std::vector<std::string>& fields) {
 }
 
 std::string WhatIsRead() {
-  return "wanted are 8 (t x y z qx qy qz qw, TUM), 12 (KITTI), 17 (EuRoC's state_groundtruth), 7 "
+  return "expected are 8 (t x y z qx qy qz qw, TUM), 12 (KITTI), 17 (EuRoC's state_groundtruth), 7 "
          "(x y z qx qy qz qw, TartanAir) or 4 (t x y z)";
 }
 
@@ -202,10 +202,10 @@ std::vector<std::string> SplitFields(const TextLine& line, const std::string& wh
   const auto num_decimal = std::count_if(fields.begin(), fields.end(), HasDecimalComma);
   if (fields.size() >= 4 && 2 * static_cast<std::size_t>(num_decimal) >= fields.size()) {
     throw InputError(where + "'" + fields[0] +
-                     "': numbers have commas where points belong; write points (sed 's/,/./g')");
+                     "': numbers have decimal commas; use points (sed 's/,/./g')");
   }
   if (!has_semicolons && text.find(',') != std::string::npos) fields = SplitAt(',', text);
-  // "..., 1," ends with a separator; ",,,," holds no pose.
+  // "..., 1," ends with a separator, whereas ",,,," contains no pose.
   const bool ends_empty = fields.size() > 1 && fields.back().empty();
   if (ends_empty && !fields[fields.size() - 2].empty()) fields.pop_back();
   return fields;
@@ -243,7 +243,7 @@ TrajectoryColumns FindColumns(const std::string& where, const std::string& headi
     columns.form = "4 numbers in a row: a time and a position";
   } else {
     const bool is_numbered_matrix = n == 13 || n == 17;
-    throw InputError(where + "holds " + std::to_string(n) + " numbers a row" +
+    throw InputError(where + "holds " + std::to_string(n) + " numbers per row" +
                      (is_numbered_matrix ? " (a number or time before a matrix, as KITTI-360 has "
                                            "it? cut it off with cut -d' ' -f2- and give --times)"
                                          : "") +

@@ -12,31 +12,30 @@
 
 namespace airdos {
 
-/// Which numbers of a row are what. One of a matrix and a position is there.
+/// The meaning of the numbers in a row. Has a matrix or a position.
 struct TrajectoryColumns {
   std::size_t num_columns = 0;
   std::optional<std::size_t> time;
-  bool is_matrix = false;  ///< 12 numbers from the first column on: 3 x 4, row major
+  bool is_matrix = false;  ///< 12 numbers from the first column on: 3 x 4, row-major
   std::array<std::size_t, 3> position = {0, 0, 0};
-  std::optional<std::array<std::size_t, 4>> quaternion;  ///< where x, y, z and w stand
+  std::optional<std::array<std::size_t, 4>> quaternion;  ///< columns of x, y, z and w
   QuaternionOrder order = QuaternionOrder::kNone;
-  std::string form;  ///< what the file was taken for, empty for TUM and KITTI
+  std::string form;  ///< the recognised format; empty for TUM and KITTI
 };
 
-/// A row's fields, between commas or semicolons where it has any, else between blanks. A field may
-/// be empty between two commas. Throws InputError (`where` begins the message) for commas as
-/// decimal separators.
+/// Splits a row at commas or semicolons if it has any, otherwise at blanks. A field between two
+/// commas may be empty. Throws InputError (whose message starts with `where`) for decimal commas.
 std::vector<std::string> SplitFields(const TextLine& line, const std::string& where);
 
 bool IsNumber(const std::string& field);
-/// nan, inf, null, none, or an empty field of a csv file: how programs write that there is no pose.
+/// nan, inf, null, none, or an empty field of a CSV file: how programs denote a missing pose.
 bool IsNoValue(const std::string& field);
 
-/// Finds out the columns from a heading that names them all (in a comment or the first row), else
-/// from the count of numbers in the first row: 8 TUM (as EuRoC, w before x, where they stand
-/// between commas behind times in ns), 12 KITTI, 16 the same with a last row 0 0 0 1, 17 EuRoC's
-/// state_groundtruth, 7 TartanAir (no times), 4 a time and a position. Throws InputError for
-/// others.
+/// Determines the columns from a heading that names them all (in a comment or the first row),
+/// otherwise from the number of fields in the first row: 8 TUM (or EuRoC, with w before x, if they
+/// are separated by commas and the times are in ns), 12 KITTI, 16 the same with a last row 0 0 0 1,
+/// 17 EuRoC's state_groundtruth, 7 TartanAir (no times), 4 time and position. Throws InputError for
+/// anything else.
 TrajectoryColumns FindColumns(const std::string& where, const std::string& heading,
                               const std::vector<std::string>& first_row, bool has_commas);
 

@@ -15,7 +15,7 @@
 namespace airdos {
 namespace {
 
-/// The pose whose quaternion is made of the same four numbers in the other order.
+/// The pose whose quaternion has the same four numbers in the other order.
 TrajectoryPose InOtherOrder(const TrajectoryPose& pose, QuaternionOrder read) {
   const Eigen::Quaterniond q(pose.rotation);
   TrajectoryPose other = pose;
@@ -32,7 +32,7 @@ int CountChanges(const PoseReading& reading) {
          reading.is_estimate_inverted + reading.is_truth_inverted;
 }
 
-/// In the order in which those that fit alike are preferred.
+/// Sorted by preference among those that fit equally well.
 std::vector<PoseReading> OtherReadings(bool has_estimate_order, bool has_truth_order) {
   constexpr bool kInversions[][2] = {{false, false}, {true, false}, {false, true}};
   std::vector<PoseReading> readings;
@@ -48,7 +48,7 @@ std::vector<PoseReading> OtherReadings(bool has_estimate_order, bool has_truth_o
   return readings;
 }
 
-/// The agreement of a reading; 0 where its axes make chance likely.
+/// The agreement of a reading; 0 if its axes make a chance fit likely.
 double AgreementOf(const PoseReading& reading, const MatchedTrajectories& reread) {
   constexpr double kMirrored = 0.97;
   const AxesDecision decision = DetectAxes(reread);
@@ -87,7 +87,7 @@ MatchedTrajectories MatchPoses(const Trajectory& estimate, const Trajectory& gro
                                             CountRepeatedPartners(matched.ground_truth));
   if (num_repeated > 0) {
     remarks->push_back({true, std::to_string(num_repeated) +
-                                  " poses are compared with one that was compared already: "
+                                  " poses are matched with one that is already matched: "
                                   "--max-diff is larger than the interval, or times repeat"});
   }
   return matched;

@@ -12,12 +12,13 @@
 #include "common/evaluation/trajectory_columns.h"
 #include "common/evaluation/trajectory_times.h"
 #include "common/util/error.h"
+#include "common/util/quantile.h"
 #include "common/util/text_file.h"
 
 namespace airdos {
 namespace {
 
-/// A row as it was read, before it is known which rows are poses.
+/// A row as read, before it is known which rows are poses.
 struct Row {
   int line = 0;
   double time = 0;
@@ -31,15 +32,7 @@ std::string Where(const std::string& path, int line) {
   return path + ":" + std::to_string(line) + ": ";
 }
 
-std::string Shown(const std::string& field) {
-  constexpr std::size_t kMostShown = 60;
-  std::string text = field.substr(0, kMostShown);
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  return text + (field.size() > kMostShown ? "..." : "");
-}
-
-/// The number of a field; nothing for those that say that there is none.
+/// The number in a field; nothing if the field denotes a missing value.
 std::optional<double> NumberOf(const std::string& field, const std::string& where) {
   if (IsNoValue(field)) return std::nullopt;
   if (!IsNumber(field)) throw InputError(where + "'" + Shown(field) + "' is not a finite number");
@@ -81,7 +74,7 @@ void ReadMatrix(const std::vector<std::string>& fields, const std::string& where
   constexpr double kRoundingOfFiles = 1e-2;
   if (!(pose.rotation * pose.rotation.transpose()).isIdentity(kRoundingOfFiles) ||
       pose.rotation.determinant() < 0) {
-    throw InputError(where + "columns 1-3, 5-7 and 9-11 are no rotation");
+    throw InputError(where + "columns 1-3, 5-7 and 9-11 are not a rotation");
   }
 }
 
@@ -106,17 +99,17 @@ Row ReadRow(const std::vector<std::string>& fields, const TrajectoryColumns& col
   return row;
 }
 
-/// Words that show at once that a file is something else.
+/// Recognises words that show that the file is something else.
 void CheckIsRows(const std::string& path, const TextLine& first) {
   const std::string& word = first.words[0];
   const std::string where = Where(path, first.number);
   if (word[0] == '{' || word[0] == '[') {
-    throw InputError(where + "is JSON, wanted are rows of numbers (TUM: t x y z qx qy qz qw)");
+    throw InputError(where + "is JSON; expected are rows of numbers (TUM: t x y z qx qy qz qw)");
   }
   const auto is_control = [](unsigned char c) { return c < 0x20; };
   if (std::any_of(word.begin(), word.end(), is_control)) {
     throw InputError(where +
-                     "is no text file, wanted are rows of numbers (TUM: t x y z qx qy qz "
+                     "is not a text file; expected are rows of numbers (TUM: t x y z qx qy qz "
                      "qw; airdos-map export writes one)");
   }
 }
@@ -124,7 +117,7 @@ void CheckIsRows(const std::string& path, const TextLine& first) {
 std::vector<Row> ReadRows(const std::string& path, TrajectoryColumns* columns) {
   std::string heading;
   std::vector<TextLine> lines = ReadTextLines(path, &heading);
-  if (lines.empty()) throw InputError(path + ": holds no pose");
+  if (lines.empty()) throw InputError(path + ": contains no pose");
   CheckIsRows(path, lines[0]);
   std::size_t first = 0;
   const std::vector<std::string> names = SplitFields(lines[0], Where(path, lines[0].number));
@@ -142,16 +135,16 @@ std::vector<Row> ReadRows(const std::string& path, TrajectoryColumns* columns) {
     if (i == first) *columns = FindColumns(where, heading, fields, has_commas);
     if (fields.size() != columns->num_columns) {
       throw InputError(where + "must hold " + std::to_string(columns->num_columns) +
-                       " numbers as the rows above, holds " + std::to_string(fields.size()));
+                       " numbers like the rows above, holds " + std::to_string(fields.size()));
     }
     rows.push_back(ReadRow(fields, *columns, where));
     rows.back().line = lines[i].number;
   }
-  if (rows.empty()) throw InputError(path + ": holds no pose");
+  if (rows.empty()) throw InputError(path + ": contains no pose");
   return rows;
 }
 
-/// Median step between neighbouring rows that both lie off the origin.
+/// Median step between neighbouring rows that are both away from the origin.
 double MedianStep(const std::vector<Row*>& rows) {
   std::vector<double> steps_m;
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -159,16 +152,14 @@ double MedianStep(const std::vector<Row*>& rows) {
     const Eigen::Vector3d& b = rows[i]->pose.position_m;
     if (!a.isZero(0) && !b.isZero(0)) steps_m.push_back((b - a).norm());
   }
-  if (steps_m.empty()) return 0;
-  const auto middle = steps_m.begin() + static_cast<std::ptrdiff_t>(steps_m.size() / 2);
-  std::nth_element(steps_m.begin(), middle, steps_m.end());
-  return *middle;
+  return Quantile(std::move(steps_m), 0.5);
 }
 
-/// Takes the position from rows that lie exactly at the origin while a neighbour does not, by many
-/// steps: that is how some programs write that they lost the camera. A start at the origin is none.
+/// Removes the position from rows exactly at the origin whose neighbour is many steps away: this is
+/// how some programs record that they lost the camera. A trajectory that starts at the origin is
+/// not affected.
 std::size_t MarkLostAtOrigin(std::vector<Row>* rows, int* first_line) {
-  constexpr double kJump = 3;  // median steps
+  constexpr double kJump = 3;  // in median steps
   constexpr double kJumpAtStart = 10;
   std::vector<Row*> posed;
   for (Row& row : *rows) {
@@ -194,8 +185,8 @@ std::size_t MarkLostAtOrigin(std::vector<Row>* rows, int* first_line) {
   return num_lost;
 }
 
-/// Rows without a number at some place are no poses, unless hardly any row has a rotation: then the
-/// file holds positions.
+/// Rows with missing numbers are not poses, unless hardly any row has a rotation: then the file
+/// contains positions only.
 void MarkLost(const TrajectoryColumns& columns, std::vector<Row>* rows, Trajectory* trajectory) {
   const auto num_rotations = static_cast<std::size_t>(
       std::count_if(rows->begin(), rows->end(), [](const Row& row) { return row.has_rotation; }));
@@ -241,7 +232,7 @@ void RemarkOnForm(const TrajectoryColumns& columns, const std::vector<Row>& rows
     trajectory->remarks.push_back(
         {true, Where(trajectory->path, row.line) + "the quaternion is of length " +
                    std::to_string(row.quaternion_length) +
-                   ", made 1: written with few digits? Rotation figures suffer from it"});
+                   ", normalised: written with few digits? This affects rotation figures"});
     return;
   }
 }
@@ -270,7 +261,7 @@ Trajectory ReadTrajectory(const std::string& path) {
     trajectory.poses.push_back(rows[i].pose);
     trajectory.poses.back().time_s = times_s[i];
   }
-  if (trajectory.poses.empty()) throw InputError(path + ": holds no pose");
+  if (trajectory.poses.empty()) throw InputError(path + ": contains no pose");
   return trajectory;
 }
 
@@ -281,7 +272,7 @@ void SetTimes(const std::string& times_path, Trajectory* trajectory) {
     const bool is_later = times.empty() || numbers[0] > times.back().time;
     if (numbers.size() != 1 || !is_later) {
       throw InputError(Where(times_path, line.number) +
-                       "must hold one time (s), later than the one before");
+                       "must hold one time (s), later than the previous one");
     }
     times.push_back({numbers[0], line.number});
   }
@@ -289,12 +280,12 @@ void SetTimes(const std::string& times_path, Trajectory* trajectory) {
     throw InputError(times_path + ": holds " + std::to_string(times.size()) + " times, " +
                      NameOf("trajectory", *trajectory) + " has " +
                      std::to_string(trajectory->num_rows()) +
-                     " rows: one time for each row is needed; give it rows of nan for the frames "
+                     " rows: one time per row is needed; add rows of nan for the frames "
                      "without a pose, or the times of its rows");
   }
   const std::vector<double> times_s = TimesInSeconds(times_path, times, &trajectory->remarks);
   for (TrajectoryPose& pose : trajectory->poses) {
-    pose.time_s = times_s[static_cast<std::size_t>(pose.time_s)];  // the row's number
+    pose.time_s = times_s[static_cast<std::size_t>(pose.time_s)];  // row number
   }
   trajectory->has_times = true;
 }
@@ -302,7 +293,7 @@ void SetTimes(const std::string& times_path, Trajectory* trajectory) {
 void SetTimesOfPair(const std::string& times_path, Trajectory* estimate, Trajectory* ground_truth) {
   if (estimate->has_times && ground_truth->has_times) {
     throw InputError(times_path + ": is not needed, " + NameOf("estimate", *estimate) + " and " +
-                     NameOf("ground truth", *ground_truth) + " have times; leave --times out");
+                     NameOf("ground truth", *ground_truth) + " have times; omit --times");
   }
   const bool is_for_both = !estimate->has_times && !ground_truth->has_times;
   if (is_for_both && estimate->num_rows() != ground_truth->num_rows()) {
@@ -317,7 +308,7 @@ void SetTimesOfPair(const std::string& times_path, Trajectory* estimate, Traject
         ": " + NameOf("estimate", *estimate) + " has " + std::to_string(estimate->num_rows()) +
         " rows, " + NameOf("ground truth", *ground_truth) + " " +
         std::to_string(ground_truth->num_rows()) +
-        "; give the shorter one as TUM with times, or with rows of nan for the frames without a "
+        "; provide the shorter one as TUM with times, or with rows of nan for the frames without a "
         "pose");
   }
   if (!estimate->has_times) SetTimes(times_path, estimate);

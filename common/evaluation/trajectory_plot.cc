@@ -1,12 +1,12 @@
 #include "common/evaluation/trajectory_plot.h"
 
-#include <cstdio>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "common/evaluation/chart.h"
 #include "common/util/error.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -15,7 +15,7 @@ const cv::Scalar kTruthColor(170, 170, 170);
 const cv::Scalar kEstimateColor(200, 90, 0);
 const cv::Scalar kErrorColor(40, 40, 200);
 
-/// The two axes of the world that span the plane seen from above: horizontal x vertical = up.
+/// The two world axes that span the plane seen from above: horizontal x vertical = up.
 struct PlaneFromAbove {
   int horizontal = 0;
   int vertical = 2;
@@ -50,18 +50,12 @@ Chart ChartOverTime(const TrajectoryReport& report, const std::string& title,
   chart.starts_at_zero = true;
   ChartSeries series = {"", kErrorColor, 1, {}};
   const std::vector<TrajectoryPose>& truth = report.aligned.ground_truth;
-  const std::size_t offset = truth.size() - values.size();  // a motion is shown at its end
+  const std::size_t offset = truth.size() - values.size();  // a motion is plotted at its end
   for (std::size_t i = 0; i < values.size(); ++i) {
     series.points.emplace_back(truth[i + offset].time_s - truth[0].time_s, values[i]);
   }
   chart.series = {series};
   return chart;
-}
-
-std::string Number(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
 }
 
 }  // namespace
@@ -80,8 +74,8 @@ cv::Mat DrawEvaluation(const TrajectoryReport& report, const std::string& title)
   const PlaneFromAbove plane =
       FindPlane(report.truth_has_rotations ? report.aligned.ground_truth : report.aligned.estimate);
   Chart above;
-  above.title = "from above, SE(3) aligned" + Number(", %.1f m", report.path_m) +
-                Number(", %.1f %% complete", 100 * report.completeness);
+  above.title = "from above, SE(3) aligned" + Format(", %.1f m", report.path_m) +
+                Format(", %.1f %% complete", 100 * report.completeness);
   above.x_label = std::string(1, kAxisNames[plane.horizontal]) + " (m)";
   above.y_label = std::string(1, kAxisNames[plane.vertical]) + " (m)";
   above.equal_scale = true;
@@ -90,7 +84,7 @@ cv::Mat DrawEvaluation(const TrajectoryReport& report, const std::string& title)
       SeriesFromAbove("estimate", kEstimateColor, 2, plane, report.aligned.estimate)};
   DrawChart(above, {0, kTitleHeight, kLeftWidth, kHeight - kTitleHeight}, &picture);
 
-  DrawChart(ChartOverTime(report, "position error" + Number(", rmse %.4f m", report.ate_se3_m.rmse),
+  DrawChart(ChartOverTime(report, "position error" + Format(", rmse %.4f m", report.ate_se3_m.rmse),
                           "error (m)",
                           PositionErrors(report.aligned.estimate, report.aligned.ground_truth)),
             {kLeftWidth, kTitleHeight, kWidth - kLeftWidth, kPanelHeight}, &picture);
@@ -102,7 +96,7 @@ cv::Mat DrawEvaluation(const TrajectoryReport& report, const std::string& title)
     }
   }
   const std::string summary =
-      has_rotations ? Number(", rmse %.4f deg", report.rpe_rotation_per_frame_deg.rmse)
+      has_rotations ? Format(", rmse %.4f deg", report.rpe_rotation_per_frame_deg.rmse)
                     : ": n/a, " + report.no_rotations_because;
   DrawChart(
       ChartOverTime(report, "rotation error per frame" + summary, "error (deg)", rotation_deg),

@@ -8,15 +8,15 @@
 
 namespace airdos {
 
-/// A picture of one evaluation, 8-bit BGR: on the left both trajectories from above (SE(3) aligned,
-/// the same scale on both axes), on the right position error (m) and rotation error per frame (deg)
-/// over time (s; over the row for KITTI rows).
+/// Draws an evaluation as an 8-bit BGR picture: on the left both trajectories from above (SE(3)
+/// aligned, equal scale on both axes); on the right the position error (m) and the rotation error
+/// per frame (deg) over time (s; over the row number for KITTI rows).
 ///
-/// Above is told from the ground truth: the axis of its world that the camera's y axis (down)
-/// points along on average.
+/// "Above" is determined from the ground truth: the axis of its world that the camera's y axis
+/// (down) points along on average.
 cv::Mat DrawEvaluation(const TrajectoryReport& report, const std::string& title);
 
-/// Writes a PNG file, whatever the ending of its name. Throws InputError where it cannot.
+/// Writes a PNG file, whatever the extension. Throws InputError on failure.
 void WritePng(const cv::Mat& picture, const std::string& path);
 
 }  // namespace airdos

@@ -2,24 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "common/evaluation/alignment.h"
 #include "common/evaluation/trajectory_doubts.h"
 #include "common/evaluation/trajectory_times.h"
 #include "common/util/error.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
 
 constexpr double kMetre = 1.0;
-
-std::string Decimals(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 Statistics AlignedError(const MatchedTrajectories& matched, const Similarity& similarity) {
   return ComputeStatistics(
@@ -30,7 +24,7 @@ Statistics ErrorAlignedBy(const MatchedTrajectories& matched, Alignment alignmen
   return AlignedError(matched, ComputeAlignment(matched, alignment));
 }
 
-/// Finds out whether one of the files holds positions only.
+/// Determines whether one of the files contains positions only.
 void FindRotations(const Trajectory& estimate, const Trajectory& ground_truth,
                    const MatchedTrajectories& matched, TrajectoryReport* report) {
   const bool has_truth_none =
@@ -45,8 +39,8 @@ void FindRotations(const Trajectory& estimate, const Trajectory& ground_truth,
       std::string("the ") + (has_truth_none ? "ground truth" : "estimate") + " has positions only";
   report->remarks.push_back(
       {true, name + ": holds positions only (no rotation, or the same in all rows while the other "
-                    "file's turn): figures of rotations and relative poses are not given, of axes "
-                    "nothing is known"});
+                    "file's turn): rotation and relative pose figures are omitted, and the axes "
+                    "are unknown"});
 }
 
 std::string Describe(const PoseReading& reading, const TrajectoryReport& report) {
@@ -69,7 +63,7 @@ std::string Describe(const PoseReading& reading, const TrajectoryReport& report)
   return text;
 }
 
-/// Reads quaternions in the other order where the motions say so; refuses inverted poses.
+/// Reads quaternions in the other order if the motions require it; refuses inverted poses.
 void DecideReading(const Trajectory& estimate, const Trajectory& ground_truth,
                    const EvaluationOptions& options, MatchedTrajectories* matched,
                    TrajectoryReport* report) {
@@ -79,19 +73,18 @@ void DecideReading(const Trajectory& estimate, const Trajectory& ground_truth,
       FindBetterReading(*matched, estimate.order, ground_truth.order);
   if (!doubt) return;
   const PoseReading& reading = doubt->reading;
-  const std::string evidence = "motions of both agree by " + Decimals("%.3f", doubt->agreement) +
+  const std::string evidence = "motions of both agree by " + Format("%.3f", doubt->agreement) +
                                " with " + Describe(reading, *report) + ", by " +
-                               Decimals("%.3f", doubt->agreement_as_read) + " as they stand";
+                               Format("%.3f", doubt->agreement_as_read) + " as read";
   if (reading.is_estimate_inverted || reading.is_truth_inverted) {
     const bool is_stated = options.is_estimate_inverted || options.is_truth_inverted;
     throw InputError(
         (reading.is_estimate_inverted ? NameOf("estimate", estimate)
                                       : NameOf("ground truth", ground_truth)) +
-        ": looks like inverted poses (T_C_W, as ORB-SLAM's Tcw, where T_W_C is wanted): " +
-        evidence +
+        ": looks like inverted poses (T_C_W, like ORB-SLAM's Tcw; T_W_C is expected): " + evidence +
         (doubt->do_both_inversions_fit ? ", and as well with the ground truth inverted" : "") +
-        (is_stated ? "; leave --inverted out, or name the other file"
-                   : std::string("; give --inverted ") +
+        (is_stated ? "; omit --inverted, or name the other file"
+                   : std::string("; use --inverted ") +
                          (reading.is_estimate_inverted ? "estimate" : "ground-truth")));
   }
   *matched = ReadAs(reading, estimate.order, ground_truth.order, std::move(*matched));
@@ -99,13 +92,13 @@ void DecideReading(const Trajectory& estimate, const Trajectory& ground_truth,
       {true, (reading.has_other_order_in_truth ? NameOf("ground truth", ground_truth)
                                                : NameOf("estimate", estimate)) +
                  ": its quaternions look like another order: " + evidence +
-                 "; the figures are of that reading, write TUM files with x y z w"});
+                 "; the figures are for that reading; write TUM files with x y z w"});
 }
 
-/// Axes where rotations tell nothing of them: as given, or as they are.
+/// Sets the axes when rotations do not determine them: as given, or as they are.
 void KeepAxes(const EvaluationOptions& options, const std::string& why, TrajectoryReport* report) {
   report->axes = options.axes.value_or(GroundTruthAxes::Optical());
-  report->axes_reason = std::string(options.axes ? "as given; " : "not looked for: ") + why;
+  report->axes_reason = std::string(options.axes ? "as given; " : "not determined: ") + why;
 }
 
 void CheckGivenAxes(const MatchedTrajectories& matched, const AxesDecision& decision,
@@ -115,13 +108,12 @@ void CheckGivenAxes(const MatchedTrajectories& matched, const AxesDecision& deci
   if (!decision.is_known || agreement > decision.best_agreement - kWorse) return;
   report->remarks.push_back(
       {true, "axes of the ground truth as given, " + report->axes.Name() +
-                 ": motions of both agree by " + Decimals("%.3f", agreement) +
-                 " only in them, by " + Decimals("%.3f", decision.agreement) + " if they are " +
-                 decision.axes.Name() +
-                 ": figures of rotations and relative poses are wrong if the axes are"});
+                 ": motions of both agree by " + Format("%.3f", agreement) + " only in them, by " +
+                 Format("%.3f", decision.agreement) + " if they are " + decision.axes.Name() +
+                 ": rotation and relative pose figures are wrong if the axes are"});
 }
 
-/// Where positions fit, but not the motions in body axes, one file's rotations are wrong.
+/// If the positions fit but the motions in body axes do not, the rotations of one file are wrong.
 bool CheckContradiction(const MatchedTrajectories& matched, const AxesDecision& decision,
                         TrajectoryReport* report) {
   constexpr double kAgree = 0.9;
@@ -131,10 +123,10 @@ bool CheckContradiction(const MatchedTrajectories& matched, const AxesDecision& 
   }
   report->remarks.push_back(
       {true, "contradiction: the positions fit, but motions in body axes agree by " +
-                 Decimals("%.3f", decision.best_agreement) +
-                 " only (1 = same): the rotations of one file are wrong or those of another body "
-                 "(order of the quaternion, an IMU's instead of the camera's?); do not believe "
-                 "figures of rotations and relative poses"});
+                 Format("%.3f", decision.best_agreement) +
+                 " only (1 = same): the rotations of one file are wrong or belong to another body "
+                 "(order of the quaternion, an IMU instead of the camera?); do not trust "
+                 "rotation and relative pose figures"});
   return true;
 }
 
@@ -148,7 +140,7 @@ void DecideAxes(const MatchedTrajectories& matched, const EvaluationOptions& opt
     CheckGivenAxes(matched, decision, report);
     return;
   }
-  // Axes that are mirrored, or no axes, would spoil the positions that fit.
+  // Mirrored axes, or none, would spoil positions that do fit.
   constexpr double kNothingFits = 0.7;
   if (is_contradiction &&
       (decision.best_agreement < kNothingFits || !decision.axes.is_right_handed())) {
@@ -157,12 +149,12 @@ void DecideAxes(const MatchedTrajectories& matched, const EvaluationOptions& opt
     return;
   }
   if (!decision.is_known) {
-    std::string warnings;  // one of them may be the reason
+    std::string warnings;  // one of these may be the reason
     for (const Remark& remark : report->remarks) {
       if (remark.is_warning) warnings += "; " + remark.text;
     }
-    throw InputError("ground truth: its axes cannot be told, " + decision.Explain() +
-                     ": give --gt-axes optical, ned or such as y,-z,x" + warnings);
+    throw InputError("ground truth: its axes cannot be determined, " + decision.Explain() +
+                     ": specify --gt-axes optical, ned or e.g. y,-z,x" + warnings);
   }
   for (const GroundTruthAxes& axes : decision.alternatives) {
     MatchedTrajectories other = matched;
@@ -183,7 +175,7 @@ void CountFrames(const Trajectory& estimate, const Trajectory& ground_truth,
   if (report->num_frames < report->num_matched) {
     throw InputError("--frames " + std::to_string(options.num_frames) + ": fewer than the " +
                      std::to_string(report->num_matched) +
-                     " poses compared; give the number of images of the whole sequence");
+                     " poses compared; specify the number of images of the whole sequence");
   }
   if (report->has_truth_higher_rate) {
     report->num_without_truth = report->num_estimate - report->num_matched;
@@ -192,8 +184,8 @@ void CountFrames(const Trajectory& estimate, const Trajectory& ground_truth,
       static_cast<double>(report->num_matched) / static_cast<double>(report->num_frames);
 }
 
-/// Frames without a pose, and those whose step is wrong. A pose that a truth of a higher rate has
-/// no partner for is not lost.
+/// Frames without a pose, and those whose step is wrong. A pose without a partner in a ground truth
+/// of higher rate is not lost.
 std::size_t CountLost(const MatchedTrajectories& aligned, const TrajectoryReport& report) {
   std::size_t num_with_pose = report.num_matched;
   if (report.has_truth_higher_rate) {
@@ -203,7 +195,7 @@ std::size_t CountLost(const MatchedTrajectories& aligned, const TrajectoryReport
   if (report.no_rotations_because.empty()) {
     return num_without + CountLostFrames(aligned, report.num_matched);
   }
-  std::size_t num_wrong = 0;  // by the displacements in the aligned world
+  std::size_t num_wrong = 0;  // judged by displacements in the aligned world
   for (std::size_t i = 1; i < aligned.estimate.size(); ++i) {
     const Eigen::Vector3d step =
         aligned.estimate[i].position_m - aligned.estimate[i - 1].position_m;
@@ -236,13 +228,13 @@ void FillRelativeErrors(const MatchedTrajectories& matched, TrajectoryReport* re
   report->segment_drifts = SegmentDrifts(matched);
 }
 
-/// What the figures themselves make doubtful.
+/// Adds remarks on what the figures themselves make doubtful.
 void RemarkOnFigures(const MatchedTrajectories& matched, TrajectoryReport* report) {
   constexpr double kSameUnit = 0.1;
   for (const double factor : {1000.0, 100.0, 0.01, 0.001}) {
     if (std::abs(report->sim3_scale / factor - 1) > kSameUnit || !DoPositionsFit(matched)) continue;
     report->remarks.push_back({true, "the positions fit with a scale of " +
-                                         Decimals("%.4g", report->sim3_scale) +
+                                         Format("%.4g", report->sim3_scale) +
                                          ": those of one file are in mm or cm; convert them to m"});
   }
   const std::size_t num_frozen = CountFrozenPoses(matched);
@@ -250,7 +242,7 @@ void RemarkOnFigures(const MatchedTrajectories& matched, TrajectoryReport* repor
   if (num_frozen > kMostByChance) {
     report->remarks.push_back(
         {true, std::to_string(num_frozen) +
-                   " poses of the estimate repeat the one before to all digits while the truth "
+                   " poses of the estimate repeat the previous one in all digits while the truth "
                    "moves: lost frames written as the last pose count as frames with one"});
   }
   if (report->ate_none_m.max == 0 && report->path_m > 0) {

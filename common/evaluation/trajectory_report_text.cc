@@ -1,23 +1,12 @@
-#include <cstdarg>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "common/evaluation/trajectory_report.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
 
-std::string Format(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string Format(const char* format, ...) {
-  char text[400];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
-
-/// `none_because`: why the figure is not given, empty if it is.
+/// `none_because`: why the figure is missing; empty if it is not.
 std::string Row(const char* name, const char* unit, const Statistics& s,
                 const std::string& none_because = "") {
   if (!none_because.empty()) {

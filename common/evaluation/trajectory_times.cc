@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
 #include "common/util/error.h"
+#include "common/util/format.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
@@ -19,29 +19,11 @@ constexpr double kLeastIntervalS = 0.0005;
 constexpr double kMostIntervalS = 2;
 constexpr double kYear2100S = 4.1e9;
 constexpr double kYear1985S = 4.7e8;
-/// Key frames and positions by satellite come as rarely as this.
+/// Key frames and satellite positions may be this rare.
 constexpr double kSparseIntervalS = 10;
 constexpr double kSparseIntervalSinceEpochS = 400;
 constexpr double kMostRepeated = 0.1;
 constexpr double kFewRepeated = 0.005;
-
-std::string Format(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string Format(const char* format, ...) {
-  char text[400];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
-
-double Quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 std::vector<double> IntervalsOf(const std::vector<TrajectoryPose>& poses) {
   std::vector<double> intervals_s;
@@ -77,10 +59,9 @@ void CheckOrder(const std::string& path, const std::vector<FileTime>& times) {
   if (first == nullptr) return;
   const bool is_reversed = num_back + 1 == times.size() && num_back > 1;
   throw InputError(
-      path +
-      Format(":%d: time %.17g lies before that of the row above; ", first->line, first->time) +
-      (is_reversed ? "all rows run backwards in time: turn them around (tac)"
-                   : "put the rows in the order of their times (sort -g), each once"));
+      path + Format(":%d: time %.17g is before that of the row above; ", first->line, first->time) +
+      (is_reversed ? "all rows run backwards in time: reverse them (tac)"
+                   : "sort the rows by time (sort -g), without duplicates"));
 }
 
 void CheckRepetition(const std::string& path, const std::vector<FileTime>& times,
@@ -107,7 +88,7 @@ void CheckRepetition(const std::string& path, const std::vector<FileTime>& times
        what + "; rows of the same time may be compared with a pose of another time"});
 }
 
-/// Whether the times are 0, 1, 2, ... or go on so from another small whole number.
+/// Whether the times are 0, 1, 2, ... or count on from another small integer.
 bool CountRows(const std::vector<FileTime>& times) {
   const bool starts_small =
       times.size() > 2 && times[0].time < kYear1985S && times[0].time == std::floor(times[0].time);
@@ -127,9 +108,10 @@ void JudgeUnit(const std::string& path, const std::vector<FileTime>& times, doub
   }
   const bool counts_rows = CountRows(times);
   if (counts_rows) {
-    remarks->push_back({true, path + Format(": the times %.0f, %.0f, %.0f, ... are numbers of rows "
-                                            "rather than s: durations and rates mean nothing then",
-                                            times[0].time, times[1].time, times[2].time)});
+    remarks->push_back(
+        {true, path + Format(": the times %.0f, %.0f, %.0f, ... are numbers of rows "
+                             "rather than s: durations and rates are then meaningless",
+                             times[0].time, times[1].time, times[2].time)});
   } else if (times.size() > 1 && (median < kLeastIntervalS || median > kSparseIntervalS)) {
     remarks->push_back({true, path + Format(": the median interval of the times is %.6g s: are "
                                             "they in s?",
@@ -144,8 +126,8 @@ std::string RangeOf(const std::vector<TrajectoryPose>& poses) {
                 last_s - first_s);
 }
 
-/// The factor by which the times of `a` overlap those of `b`, if they begin and last alike then; 0
-/// for none.
+/// The factor that makes the times of `a` overlap those of `b` with similar start and duration; 0
+/// if there is none.
 double FactorBetween(const std::vector<TrajectoryPose>& a, const std::vector<TrajectoryPose>& b) {
   const double duration_a_s = a.back().time_s - a.front().time_s;
   const double duration_b_s = b.back().time_s - b.front().time_s;
@@ -166,13 +148,13 @@ std::string ExplainOffset(double offset_s) {
   const double hours = std::round(size_s / 3600);
   const char* why = "they come from different clocks";
   if (size_s > kYear1985S) {
-    why = "one counts since 1970, the other from a start of its own";
+    why = "one counts from 1970, the other from another origin";
   } else if (std::abs(size_s - kGpsEpochS) < kMostLeapS) {
     why = "one is GPS time, the other since 1970";
   } else if (hours >= 1 && hours <= 24 && std::abs(size_s - 3600 * hours) < 60) {
     why = "whole hours: one is local time";
   }
-  return Format("the first poses lie %.6f s apart, %s; shift the times of one file", size_s, why);
+  return Format("the first poses are %.6f s apart, %s; shift the times of one file", size_s, why);
 }
 
 }  // namespace
@@ -190,7 +172,7 @@ double UnitOfTimes(const std::vector<FileTime>& times) {
         unit.seconds * median >= kLeastIntervalS && unit.seconds * median <= kMostIntervalS;
     if (is_before_2100 && (is_interval || times.size() == 1)) return unit.seconds;
   }
-  // Rare poses since 1970 in a small unit.
+  // Infrequent poses, with times since 1970 in a small unit.
   for (const Unit& unit : kUnits) {
     const double most_s = unit.seconds * most;
     if (most_s > kYear1985S && most_s < kYear2100S && unit.seconds * median <= sparse &&
@@ -243,14 +225,14 @@ std::string CompareTimes(const Trajectory& estimate, const Trajectory& ground_tr
     if (j + 1 < b.size()) nearest_s = std::min(nearest_s, b[j + 1].time_s - pose.time_s);
   }
   return text + Format(
-                    "they overlap, but the nearest times lie %.6f s apart and --max-diff is "
+                    "they overlap, but the nearest times are %.6f s apart and --max-diff is "
                     "%.6f s; are the times of one rounded, or shifted by part of a frame?",
                     nearest_s, max_time_difference_s);
 }
 
 std::size_t FramesOfSlowerEstimate(const Trajectory& estimate, const Trajectory& ground_truth) {
   constexpr double kHigherRate = 1.5;
-  constexpr double kRegular = 0.25;  // of the interval
+  constexpr double kRegular = 0.25;  // relative to the interval
   const double interval_s = MedianInterval(estimate.poses);
   const double truth_interval_s = MedianInterval(ground_truth.poses);
   const bool has_fewer_rows = estimate.num_rows() < ground_truth.num_rows();

@@ -40,7 +40,7 @@ double CameraMotionFilter::Memory(double step_s) const {
 }
 
 CameraMotionFilter::Joint CameraMotionFilter::Propagate(double step_s) const {
-  // An error of the pose is carried into the axes of the next frame:
+  // The error of the pose, expressed in the axes of the next frame:
   //   d_t' = R^T (d_t - [v dt]_x d_r) + dt d_v,   d_r' = R^T d_r + dt d_w,   R = Exp(w dt).
   const double memory = Memory(step_s);
   const Vector6d step = memory * step_s * velocity_;
@@ -89,9 +89,9 @@ void CameraMotionFilter::Update(const PosePrior& prior, double step_s, const Se3
 
 void CameraMotionFilter::LearnAcceleration(const Joint& predicted, const Vector6d& innovation,
                                            const Matrix6d& information, double step_s) {
-  // A frame that sees little, or one after it, is off because little is known: it must not loosen
-  // the prediction that such frames need most.
-  constexpr double kUnobserved = 1e-6;  // information: a sigma of a kilometre
+  // In a frame that sees little, or right after one, the prediction is off because little is known.
+  // That must not make it less certain for the very frames that depend on it.
+  constexpr double kUnobserved = 1e-6;  // information; a sigma of a kilometre
   const Matrix6d measured = (information + kUnobserved * Matrix6d::Identity()).inverse();
   for (const int begin : {0, 3}) {
     const double process = Trace(predicted.process, begin);

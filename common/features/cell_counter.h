@@ -7,7 +7,7 @@
 
 namespace airdos {
 
-/// Counts what lies in each square cell of the image.
+/// Counts points per square cell of the image.
 class CellCounter {
  public:
   explicit CellCounter(int cell_size_px) : cell_size_px_(cell_size_px) {}
@@ -15,7 +15,7 @@ class CellCounter {
     const auto it = counts_.find(CellOf(uv_px));
     return it != counts_.end() && it->second >= limit;
   }
-  /// False where the cell is full.
+  /// Counts a point; false, without counting it, if its cell is full.
   bool Take(const Eigen::Vector2d& uv_px, int limit) {
     int& count = counts_[CellOf(uv_px)];
     return count < limit && ++count > 0;

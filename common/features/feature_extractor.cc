@@ -10,11 +10,11 @@
 namespace airdos {
 namespace {
 
-constexpr int kBorder_px = 20;  // of each level: the rotated ORB pattern and its smoothing must fit
+constexpr int kBorder_px = 20;  // on each level; for the rotated ORB pattern and its smoothing
 constexpr int kOrientationRadius_px = 15;
-constexpr int kOrientationWidth = 2 * (kOrientationRadius_px + 1);  // px, a whole vector
+constexpr int kOrientationWidth = 2 * (kOrientationRadius_px + 1);  // px; one whole vector register
 
-/// For each row of the disc of kOrientationRadius_px: 1 inside, 0 outside.
+/// For each row of the disc of radius kOrientationRadius_px: 1 inside, 0 outside.
 using DiscRows = std::array<std::array<std::int16_t, kOrientationWidth>, kOrientationRadius_px + 1>;
 
 DiscRows MakeDiscRows() {
@@ -28,18 +28,18 @@ DiscRows MakeDiscRows() {
   return rows;
 }
 
-/// Direction of the intensity centroid of the disc around (x, y), degrees. Sums by column, which
-/// the compiler turns into vector instructions; all of them fit into 16 bits.
+/// Direction of the intensity centroid of the disc around (x, y), in degrees. Sums by column, which
+/// the compiler vectorises; every sum fits into 16 bits.
 float IntensityCentroidAngle_deg(const cv::Mat& image, int x, int y) {
   static const DiscRows kDiscRows = MakeDiscRows();
-  std::array<std::int16_t, kOrientationWidth> sums{};     // of the grey values of each column
-  std::array<std::int16_t, kOrientationWidth> moments{};  // of the same, weighted by the row
+  std::array<std::int16_t, kOrientationWidth> sums{};     // of each column's grey values
+  std::array<std::int16_t, kOrientationWidth> moments{};  // the same, weighted by row
   for (int dy = 0; dy <= kOrientationRadius_px; ++dy) {
     const uchar* above = image.ptr<uchar>(y - dy) + x - kOrientationRadius_px;
     const uchar* below = image.ptr<uchar>(y + dy) + x - kOrientationRadius_px;
     const std::int16_t* inside = kDiscRows[static_cast<std::size_t>(dy)].data();
     const auto weight = static_cast<std::int16_t>(dy);
-    const auto both = static_cast<std::int16_t>(dy > 0 ? -1 : 0);  // row 0 is one, not two
+    const auto both = static_cast<std::int16_t>(dy > 0 ? -1 : 0);  // row 0 is a single row
     for (std::size_t i = 0; i < kOrientationWidth; ++i) {
       const auto upper = static_cast<std::int16_t>(above[i] & both);
       const auto lower = static_cast<std::int16_t>(below[i]);
@@ -70,7 +70,7 @@ bool IsMasked(const ImagePyramid& pyramid, int level, const cv::Mat& mask,
   return mask.at<uchar>(v, u) != 0;
 }
 
-/// The strongest corners of each cell, strongest first, in one piece of memory.
+/// The strongest corners of each cell, strongest first, in one contiguous array.
 class CellSelection {
  public:
   CellSelection(int num_cells, int max_per_cell)
@@ -91,7 +91,7 @@ class CellSelection {
     ++count;
   }
 
-  /// Cell by cell.
+  /// All selected corners, cell by cell.
   std::vector<cv::KeyPoint> All() const {
     std::vector<cv::KeyPoint> all;
     for (std::size_t cell = 0; cell < counts_.size(); ++cell) {
@@ -151,7 +151,8 @@ std::vector<Feature> FeatureExtractor::Extract(const ImagePyramid& pyramid, cons
   for (int level = 0; level < pyramid.num_levels(); ++level) {
     std::vector<cv::KeyPoint> corners = DetectLevel(pyramid, level, mask, num_masked);
     if (corners.empty()) continue;
-    // Each level by itself: left to the whole image, ORB would shrink it again, to other sizes.
+    // Each level separately: given the whole image, ORB would build its own pyramid, of other
+    // sizes.
     cv::Mat descriptors;
     orb_->compute(pyramid.level(level), corners, descriptors);
     for (std::size_t i = 0; i < corners.size(); ++i) {

@@ -10,24 +10,28 @@
 
 namespace airdos {
 
+/// Settings of the FeatureExtractor.
 struct FeatureExtractorOptions {
   int num_levels = 8;
-  int fast_threshold = 8;  ///< grey levels; low, because crowded scenes leave only faint texture
-  int cell_size_px = 32;   ///< of the grid over which features are spread, at each level
+  int fast_threshold = 8;  ///< grey levels; low, since crowds leave only faint texture
+  int cell_size_px = 32;   ///< of the grid for spreading features, at each level
   int max_features_per_cell = 5;
 };
 
-/// FAST corners with ORB descriptors (Rublee et al. 2011), at most max_features_per_cell in each
-/// cell of each level so that they spread over the image. Sorted by level, then row-major by cell,
-/// then by response: the order is deterministic.
+/// Extracts FAST corners with ORB descriptors (Rublee et al. 2011), at most max_features_per_cell
+/// per cell of each level so that they cover the whole image. Sorted by level, then cell
+/// (row-major), then response, so the order is deterministic.
 class FeatureExtractor {
  public:
   explicit FeatureExtractor(const FeatureExtractorOptions& options);
 
-  /// `mask` (CV_8UC1, size of the image, or empty): corners on pixels that are not 0 are left out
-  /// and counted in `num_masked`.
+  /// `mask` is CV_8UC1 and has the size of the image, or is empty. Corners on non-zero pixels are
+  /// left out and counted in `num_masked`.
   std::vector<Feature> Extract(const ImagePyramid& pyramid, const cv::Mat& mask,
                                int* num_masked) const;
+
+  /// Of the pyramids that it is made for.
+  int num_levels() const { return options_.num_levels; }
 
  private:
   std::vector<cv::KeyPoint> DetectLevel(const ImagePyramid& pyramid, int level, const cv::Mat& mask,

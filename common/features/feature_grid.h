@@ -8,19 +8,19 @@
 
 namespace airdos {
 
-/// Finds the features around a point of the image.
+/// Finds the features near a point of the image.
 class FeatureGrid {
  public:
   FeatureGrid(const std::vector<Feature>& features, int width_px, int height_px);
 
-  /// Pyramid levels, both ends included.
+  /// A range of pyramid levels, both ends included.
   struct Levels {
     int first = 0;
     int last = 0;
   };
 
-  /// Calls `visit(index)` for each feature of the levels within the square of half width
-  /// `radius_px`, in an order that depends only on the features.
+  /// Calls `visit(index)` for each feature on the given levels within a square of half-width
+  /// `radius_px`. The order depends only on the features.
   template <class Visit>
   void ForEachNear(const Eigen::Vector2d& uv_px, double radius_px, const Levels& levels,
                    Visit visit) const {
@@ -42,7 +42,7 @@ class FeatureGrid {
   static constexpr double kCellSize_px = 16;
   static int Clamp(double coordinate_px, int count);
 
-  /// What a search looks at, side by side in memory.
+  /// What a search reads of a feature, contiguous in memory.
   struct Entry {
     Eigen::Vector2d uv_px;
     int index;

@@ -13,8 +13,8 @@ ImagePyramid::ImagePyramid(const cv::Mat& image, int num_levels) {
   cv::Mat level = image;
   for (int index = 0; index < num_levels; ++index) {
     if (index > 0) {
-      // By factor, not by size: sizes are whole, so a size would stretch the level a little, up to
-      // 0.4 px at its far border, and ToLevel() would not know.
+      // By factor, not by size: sizes are integers, so a given size would stretch the level by up
+      // to 0.4 px at its far border, unknown to ToLevel().
       cv::Mat smaller;
       cv::resize(level, smaller, {}, 1 / kScaleFactor, 1 / kScaleFactor, cv::INTER_LINEAR);
       if (smaller.cols < kMinSize_px || smaller.rows < kMinSize_px) break;

@@ -6,21 +6,20 @@
 
 namespace airdos {
 
-/// A grey image at several scales. Level 0 is the image, each further level is kScaleFactor
-/// smaller. A pixel's coordinates are those of its centre at every level, so a point at (u, v) of
+/// A grey image at several scales. Level 0 is the image; each further level is smaller by
+/// kScaleFactor. Pixel coordinates refer to pixel centres on every level, so a point at (u, v) of
 /// level 0 lies at ((u + 0.5) / scale - 0.5, …).
 class ImagePyramid {
  public:
   static constexpr double kScaleFactor = 1.2;
 
   ImagePyramid() = default;
-  /// `image` must be CV_8UC1 and is shared, not copied. Levels that would be narrower than 64 px
-  /// are left out.
+  /// `image` must be CV_8UC1 and is shared, not copied. Levels narrower than 64 px are left out.
   ImagePyramid(const cv::Mat& image, int num_levels);
 
   int num_levels() const { return static_cast<int>(levels_.size()); }
   const cv::Mat& level(int index) const { return levels_[static_cast<std::size_t>(index)]; }
-  /// How many px of level 0 one px of this level spans.
+  /// Size of one pixel of this level in px of level 0.
   double scale(int index) const { return scales_[static_cast<std::size_t>(index)]; }
 
   double ToLevel(double coordinate_px, int index) const {

@@ -3,7 +3,7 @@
 namespace airdos {
 namespace {
 
-/// The value that a tenth of the others reach.
+/// The 90th percentile.
 double BestTenth(std::vector<double> values) {
   const auto it = values.end() - 1 - static_cast<std::ptrdiff_t>(values.size() / 10);
   std::nth_element(values.begin(), it, values.end());
@@ -15,7 +15,7 @@ double BestTenth(std::vector<double> values) {
 TrustField LandmarkJudge::Judge(const StereoCamera& camera, const Se3& T_W_C,
                                 const std::vector<LandmarkId>& tried,
                                 const std::set<LandmarkId>& agreed, LocalMap* map) {
-  constexpr double kBaseGain = 0.005;  // a memory of about 200 new landmarks: two or three frames
+  constexpr double kBaseGain = 0.005;  // averages over about 200 new landmarks: 2 or 3 frames
   constexpr double kMinDepth_m = 0.1;
   TrustField field(base_probability_);
   std::vector<double> probabilities;

@@ -11,33 +11,33 @@
 
 namespace airdos {
 
-/// Learns from each frame which landmarks stay where they are. It needs no knowledge of what moves:
-/// what was found again where the camera's pose says, frame after frame, is trusted; what was not,
-/// and what appears beside it at the same depth, is not.
+/// Learns from each frame which landmarks are static, without knowing what moves: a landmark that
+/// is found again, frame after frame, where the camera's pose predicts it is trusted. One that is
+/// not loses trust, and so do new landmarks next to it at the same depth.
 class LandmarkJudge {
  public:
-  /// Notes for each landmark in `tried`, which were looked for in a frame at T_W_C, whether it was
-  /// found where it should be (it is in `agreed`) in its trust and in num_expected. Returns how
-  /// much new landmarks of this frame can be trusted.
+  /// `tried` are the landmarks searched for in a frame at T_W_C, `agreed` those among them that
+  /// were found where they should be. Updates their trust and num_expected. Returns how far new
+  /// landmarks of this frame can be trusted.
   TrustField Judge(const StereoCamera& camera, const Se3& T_W_C,
                    const std::vector<LandmarkId>& tried, const std::set<LandmarkId>& agreed,
                    LocalMap* map);
 
-  /// In proportion to the most trusted landmarks that could be seen last, 0..1: where everything is
-  /// in doubt the least doubtful have to do.
+  /// Trust relative to that of the most trusted landmarks in view last time, 0..1. Where everything
+  /// is in doubt, the least doubtful landmarks have to do.
   double RelativeTrust(const LandmarkTrust& trust) const {
     return std::min(1.0, trust.static_probability() / best_probability_);
   }
 
-  /// Where nothing is known of the neighbourhood: the share of landmarks that were found again in
-  /// the frame after the one that made them.
+  /// For a neighbourhood about which nothing is known: the share of landmarks that were found again
+  /// in the frame after the one that created them.
   TrustField Unknown() const { return TrustField(base_probability_); }
 
  private:
   static constexpr double kFirstProbability = 0.7;
 
   double base_probability_ = kFirstProbability;
-  double best_probability_ = kFirstProbability;  // that a tenth of the landmarks reach
+  double best_probability_ = kFirstProbability;  // reached by a tenth of the landmarks
 };
 
 }  // namespace airdos

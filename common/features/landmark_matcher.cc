@@ -8,7 +8,7 @@
 namespace airdos {
 namespace {
 
-/// The feature nearest to a descriptor and the one after it; of equals the first.
+/// The features with the most and the second most similar descriptor; of equals, the first.
 struct NearestTwo {
   int best = -1;
   int second = -1;
@@ -16,8 +16,8 @@ struct NearestTwo {
   int second_distance = 257;
 };
 
-// The loops over descriptors are compiled twice: for every processor, and for those that can count
-// bits in one instruction. Both give the same.
+// The loops over descriptors are compiled twice: for every processor, and for those with an
+// instruction that counts bits. The results are the same.
 
 [[gnu::always_inline]] inline int CountDifferentBits(const Descriptor& a, const Descriptor& b) {
   int distance = 0;
@@ -41,7 +41,7 @@ struct NearestTwo {
   return nearest;
 }
 
-/// Of the query to the features of the given indices.
+/// Distances from the query to the features with the given indices.
 [[gnu::always_inline]] inline void FindDistancesInline(const Descriptor& query,
                                                        const std::vector<Feature>& features,
                                                        const std::vector<int>& indices,
@@ -88,7 +88,7 @@ std::vector<VisibleLandmark> FindVisible(const LocalMap& map, const StereoCamera
                                          const Se3& T_W_C, int num_levels) {
   constexpr double kMinDepth_m = 0.3;
   constexpr double kMaxLevelChange =
-      4.0;  // beyond it (a factor of two) the patch no longer looks the same
+      4.0;  // beyond a factor of two the patch no longer looks the same
   const double log_factor = std::log(ImagePyramid::kScaleFactor);
   const Se3 T_C_W = T_W_C.inverse();
   std::vector<VisibleLandmark> visible;
@@ -132,7 +132,7 @@ std::vector<LandmarkMatch> MatchByProjection(const std::vector<VisibleLandmark>&
       const int distance = distances[i];
       const Feature& feature = features[static_cast<std::size_t>(index)];
       if (distance < best) {
-        // The same corner at a neighbouring level is no rival.
+        // The same corner on a neighbouring level is not a rival.
         const bool is_same_corner =
             best_feature >= 0 &&
             (features[static_cast<std::size_t>(best_feature)].uv_px - feature.uv_px).norm() < 3;
@@ -145,7 +145,7 @@ std::vector<LandmarkMatch> MatchByProjection(const std::vector<VisibleLandmark>&
         second = distance;
       }
     }
-    if (best > search.max_hamming || best > search.max_ratio * second) continue;
+    if (best > search.max_hamming_bits || best > search.max_ratio * second) continue;
     const auto [it, is_new] =
         best_of_feature.try_emplace(best_feature, LandmarkMatch{candidate.id, best_feature, best});
     if (!is_new && best < it->second.distance) it->second = {candidate.id, best_feature, best};
@@ -159,18 +159,18 @@ std::vector<LandmarkMatch> MatchByProjection(const std::vector<VisibleLandmark>&
 
 std::vector<LandmarkMatch> MatchByDescriptor(
     const std::vector<std::pair<LandmarkId, const LocalLandmark*>>& landmarks,
-    const std::vector<Feature>& features, int max_hamming, double max_ratio) {
+    const std::vector<Feature>& features, int max_hamming_bits, double max_ratio) {
   if (landmarks.empty() || features.size() < 2) return {};
-  std::vector<Descriptor> descriptors;  // side by side: every landmark reads them all
+  std::vector<Descriptor> descriptors;  // contiguous: every landmark reads them all
   descriptors.reserve(features.size());
   for (const Feature& feature : features) descriptors.push_back(feature.descriptor);
   std::map<int, LandmarkMatch> best_of_feature;
   for (const auto& [id, landmark] : landmarks) {
     const NearestTwo nearest = FindNearestTwo(landmark->descriptor, descriptors);
-    if (nearest.best_distance > max_hamming) continue;
+    if (nearest.best_distance > max_hamming_bits) continue;
     const Eigen::Vector2d apart = features[static_cast<std::size_t>(nearest.best)].uv_px -
                                   features[static_cast<std::size_t>(nearest.second)].uv_px;
-    const bool is_same_corner = apart.norm() < 3;  // at a neighbouring level: no rival
+    const bool is_same_corner = apart.norm() < 3;  // on a neighbouring level: not a rival
     if (!is_same_corner && nearest.best_distance > max_ratio * nearest.second_distance) continue;
     const LandmarkMatch match{id, nearest.best, nearest.best_distance};
     const auto [it, is_new] = best_of_feature.try_emplace(nearest.best, match);

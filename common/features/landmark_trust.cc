@@ -5,9 +5,9 @@
 namespace airdos {
 namespace {
 
-constexpr double kMemoryFrames = 20;     // of a landmark: older frames count less and less
-constexpr double kBaseWeight = 2;        // verdicts that the base probability is worth
-constexpr double kMaxDepthRatio = 1.25;  // of neighbours that may be parts of the same thing
+constexpr double kMemoryFrames = 20;     // older frames of a landmark count less and less
+constexpr double kBaseWeight = 2;        // weight of the base probability, in verdicts
+constexpr double kMaxDepthRatio = 1.25;  // between neighbours that may belong to the same thing
 
 void Count(double* one, double* other) {
   *one += 1;

@@ -8,13 +8,13 @@
 
 namespace airdos {
 
-/// How sure it is that a landmark belongs to the static scene, learnt from the frames in which it
-/// was looked for: a Beta distribution over "it was where the camera's pose says", old frames
-/// counting ever less, so that somebody who stood and now walks loses the trust again.
+/// How likely it is that a landmark belongs to the static scene, learnt from the frames in which it
+/// was searched for: a Beta distribution over "it was where the camera's pose predicts it". Older
+/// frames count less and less, so somebody who stood still and now walks loses trust again.
 class LandmarkTrust {
  public:
   LandmarkTrust() = default;
-  /// `static_probability` is believed before anything was seen, 0..1.
+  /// `static_probability` is the belief before any observation, 0..1.
   explicit LandmarkTrust(double static_probability)
       : num_agreed_(kPriorFrames * static_probability),
         num_disagreed_(kPriorFrames * (1 - static_probability)) {}
@@ -31,12 +31,12 @@ class LandmarkTrust {
   double num_disagreed_ = 0;
 };
 
-/// What the landmarks of one frame turned out to be, over the image: from it follows how much a new
-/// landmark can be trusted before it was ever seen again. Beside a landmark that moved, and as far
-/// away, there are other points of whatever moved.
+/// The verdicts on one frame's landmarks, over the image. They tell how far a new landmark can be
+/// trusted before it has been seen again: next to a landmark that moved, other points at the same
+/// depth probably belong to the same moving thing.
 class TrustField {
  public:
-  /// `base_probability` stands in where nothing is near.
+  /// `base_probability` is used where there is no verdict nearby.
   explicit TrustField(double base_probability) : base_probability_(base_probability) {}
 
   void Add(const Eigen::Vector2d& uv_px, double depth_m, bool is_static);
@@ -44,6 +44,7 @@ class TrustField {
 
  private:
   static constexpr double kRadius_px = 32;
+  /// Whether one landmark turned out to be static.
   struct Verdict {
     Eigen::Vector2d uv_px;
     double depth_m;

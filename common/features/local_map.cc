@@ -43,16 +43,16 @@ void LocalMap::Apply(const MapCorrection& correction) {
   }
 }
 
-// Each keeps the whole image of its reference frame in memory.
+// A reference frame keeps its whole image in memory.
 void LocalMap::CullReferenceFrames() {
-  std::map<FrameId, FrameId> last_seen;  // by reference frame
+  std::map<FrameId, FrameId> last_seen;  // of each reference frame
   for (const auto& [id, landmark] : landmarks_) {
     FrameId& newest =
         last_seen.try_emplace(landmark.reference_frame, landmark.last_seen).first->second;
     if (newest < landmark.last_seen) newest = landmark.last_seen;
   }
   if (last_seen.size() <= kMaxReferenceFrames) return;
-  std::vector<std::pair<std::int64_t, std::int64_t>> by_age;  // last seen, reference frame
+  std::vector<std::pair<std::int64_t, std::int64_t>> by_age;  // (last seen, reference frame)
   for (const auto& [reference, seen] : last_seen) by_age.emplace_back(seen.value, reference.value);
   std::sort(by_age.begin(), by_age.end());
   const auto first_kept = by_age[last_seen.size() - kMaxReferenceFrames];
@@ -77,7 +77,7 @@ void LocalMap::Cull(FrameId now) {
   CullReferenceFrames();
   const auto limit = static_cast<std::size_t>(options_.max_landmarks);
   if (landmarks_.size() <= limit) return;
-  std::vector<std::pair<std::int64_t, std::int64_t>> by_age;  // last seen, id
+  std::vector<std::pair<std::int64_t, std::int64_t>> by_age;  // (last seen, id)
   for (const auto& [id, landmark] : landmarks_)
     by_age.emplace_back(landmark.last_seen.value, id.value);
   const std::size_t surplus = landmarks_.size() - limit;

@@ -17,13 +17,13 @@
 
 namespace airdos {
 
-/// A static point of the world and how it looked when it was created.
+/// A static point of the world, and what it looked like when it was created.
 struct LocalLandmark {
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
   bool is_refined =
-      false;  ///< p_W comes from the optimizer; else it moves with its reference frame
+      false;  ///< p_W is from the optimizer; otherwise it moves with its reference frame
 
-  /// m^2, of p_W when it was created: from the stereo measurement and the camera's pose.
+  /// m^2, of p_W at its creation: from the stereo measurement and the camera's pose.
   Eigen::Matrix3d created_covariance_W = Eigen::Matrix3d::Zero();
 
   FrameId reference_frame;
@@ -32,20 +32,21 @@ struct LocalLandmark {
   Eigen::Vector2d reference_uv_px = Eigen::Vector2d::Zero();
   int reference_level = 0;
 
-  LandmarkTrust trust;      ///< that it does not move
-  Descriptor descriptor{};  ///< as when it was created
+  LandmarkTrust trust;      ///< that it is static
+  Descriptor descriptor{};  ///< when it was created
   FrameId last_seen;
   int num_seen = 0;
-  int num_expected = 0;  ///< frames in which it was looked for: in view and off people
+  int num_expected = 0;  ///< frames in which it was searched for: in view and off people
 };
 
+/// Limits of the LocalMap.
 struct LocalMapOptions {
   int max_landmarks = 6000;
   int max_frames_unconfirmed = 8;  ///< a landmark seen once is dropped after so many frames
-  double min_found_ratio = 0.15;   ///< of the frames it was expected in
+  double min_found_ratio = 0.15;   ///< of the frames in which it was expected
 };
 
-/// What the optimizer says of the frames and landmarks around frame `newest` (MAP_UPDATE).
+/// The optimizer's result for the frames and landmarks around frame `newest` (MAP_UPDATE).
 struct MapCorrection {
   FrameId newest;
   std::vector<std::pair<FrameId, Se3>> frames;                        ///< T_W_C
@@ -53,7 +54,7 @@ struct MapCorrection {
   std::vector<LandmarkId> removed;
 };
 
-/// The landmarks against which frames are tracked, and the poses of the recent frames.
+/// The landmarks that frames are tracked against, and the poses of the recent frames.
 class LocalMap {
  public:
   explicit LocalMap(const LocalMapOptions& options, LandmarkId first_id = {1})
@@ -67,15 +68,16 @@ class LocalMap {
   void SetPose(FrameId frame, const Se3& T_W_C);
 
   /// Takes over the optimizer's poses and points. Frames newer than the correction keep their
-  /// motion relative to it, and landmarks that the optimizer has not refined move with the frame
-  /// they were created in.
+  /// motion relative to it, and landmarks that the optimizer has not refined move with the frame in
+  /// which they were created.
   void Apply(const MapCorrection& correction);
 
-  /// Drops what was not found again, and the longest unseen beyond the limit; also all landmarks of
-  /// the reference frames that were not seen for longest, beyond kMaxReferenceFrames of them.
+  /// Drops the landmarks that were not found again and, beyond the limit, those unseen for longest.
+  /// Also keeps at most kMaxReferenceFrames reference frames, dropping all landmarks of those that
+  /// have not been seen for longest.
   void Cull(FrameId now);
 
-  /// Landmarks hold on to the images of so many frames at most: the largest part of the memory.
+  /// Landmarks keep the images of at most this many frames: the largest part of the memory used.
   static constexpr std::size_t kMaxReferenceFrames = 250;
 
  private:

@@ -12,9 +12,9 @@ namespace {
 constexpr int kMaxIterations = 12;
 constexpr double kConverged_px = 0.01;
 constexpr double kMinDeviation =
-    20;  // a patch flatter than this (grey levels, whole square) has no position
+    20;  // grey levels, over the whole square; a flatter patch cannot be located
 
-/// Fills `num` samples of one row with bilinear interpolation; the caller has checked the borders.
+/// Computes `num` samples of one row by bilinear interpolation; the caller has checked the borders.
 void SampleRow(const cv::Mat& image, double u, double v, double step, int num, float* out) {
   const int v0 = static_cast<int>(std::floor(v));
   const float fv = static_cast<float>(v - v0);
@@ -37,12 +37,13 @@ bool IsInside(const cv::Mat& image, const Eigen::Vector2d& centre, double reach)
          centre.x() + reach < image.cols - 1 && centre.y() + reach < image.rows - 1;
 }
 
-/// Samples of a square, one row of it in each column, padded to whole vectors.
+/// Samples of a square, one row per column, padded to whole vectors.
 template <int kCount>
 using Square = Eigen::Array<float, (kCount + 3) / 4 * 4, kCount>;
 
-/// Bilinear, one px between samples: the same fractions everywhere, so whole rows at a time. The
-/// caller has checked the borders; the padding repeats the last pixel.
+/// Bilinear, with one px between samples, so the fractions are the same everywhere and whole rows
+/// can be interpolated at once. The caller has checked the borders; the padding repeats the last
+/// pixel.
 template <int kCount>
 Square<kCount> SampleUnitSteps(const cv::Mat& image, double u, double v) {
   constexpr std::size_t kPadded = Square<kCount>::RowsAtCompileTime;
@@ -65,7 +66,7 @@ Square<kCount> SampleUnitSteps(const cv::Mat& image, double u, double v) {
          fv * (rows.template rightCols<kCount>() - rows.template leftCols<kCount>());
 }
 
-/// Less the mean; the padding becomes 0.
+/// Subtracts the mean; the padding becomes 0.
 Square<Patch::kSize> Centred(Square<Patch::kSize> samples) {
   samples.bottomRows<1>().setZero();
   samples -= samples.sum() / (Patch::kSize * Patch::kSize);

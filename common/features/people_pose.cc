@@ -8,10 +8,10 @@ namespace {
 
 constexpr int kMaxIterations = 10;
 constexpr double kConverged = 1e-8;
-constexpr double kHuberPerson = 1.5;  // sigmas, root mean square over a person's joints
+constexpr double kHuberPerson = 1.5;  // sigmas, RMS over a person's joints
 
-/// Adds the normal equations of r = T_W_C p_C - p_W over the person's joints.
-void AddPerson(const PersonConstraint& person, const Se3& T_W_C, Matrix6d* H, Vector6d* b) {
+/// Adds the normal equations of r = T_W_C p_C - p_W for the person's joints.
+void AddPerson(const HumanConstraint& person, const Se3& T_W_C, Matrix6d* H, Vector6d* b) {
   const auto n = static_cast<Eigen::Index>(person.p_W.size());
   const Eigen::Matrix3d R_W_C = T_W_C.rotation.toRotationMatrix();
   Eigen::VectorXd r(3 * n);
@@ -34,17 +34,17 @@ void AddPerson(const PersonConstraint& person, const Se3& T_W_C, Matrix6d* H, Ve
 }  // namespace
 
 PeoplePose EstimatePoseFromPeople(const PosePrior& prior,
-                                  const std::vector<PersonConstraint>& people) {
-  PeoplePose pose{prior, Matrix6d::Zero()};
+                                  const std::vector<HumanConstraint>& people) {
+  PeoplePose pose{prior, Matrix6d::Zero(), static_cast<int>(people.size())};
   if (people.empty()) return pose;
   const Matrix6d prior_information = prior.covariance.inverse();
   Se3& T_W_C = pose.prior.T_W_C;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     pose.information.setZero();
     Vector6d b = -prior_information * Boxminus(T_W_C, prior.T_W_C);
-    for (const PersonConstraint& person : people) AddPerson(person, T_W_C, &pose.information, &b);
+    for (const HumanConstraint& person : people) AddPerson(person, T_W_C, &pose.information, &b);
     const Vector6d delta = (prior_information + pose.information).ldlt().solve(b);
-    if (!delta.allFinite()) return {prior, Matrix6d::Zero()};
+    if (!delta.allFinite()) return {prior, Matrix6d::Zero(), pose.num_people};
     T_W_C = Boxplus(T_W_C, delta);
     if (delta.norm() < kConverged) break;
   }

@@ -8,17 +8,19 @@
 
 namespace airdos {
 
+/// A pose estimated from people.
 struct PeoplePose {
-  PosePrior prior;                          ///< what the prior and the people say together
-  Matrix6d information = Matrix6d::Zero();  ///< of the tangent, from the people alone
+  PosePrior prior;                          ///< the prior and the people combined
+  Matrix6d information = Matrix6d::Zero();  ///< of the tangent, from people only
+  int num_people = 0;                       ///< who contributed
 };
 
 /// The camera's pose from people: `prior` corrected by where the camera sees them and where they
-/// must be. Each person counts with the joint covariance of all his points and a Huber weight as a
-/// whole: somebody who does not do what was predicted says little. Without people the prior comes
-/// back.
+/// should be. Each person enters as a whole, with the joint covariance of all joints and one Huber
+/// weight: somebody who does not move as predicted has little influence. Without people the prior
+/// is returned.
 PeoplePose EstimatePoseFromPeople(const PosePrior& prior,
-                                  const std::vector<PersonConstraint>& people);
+                                  const std::vector<HumanConstraint>& people);
 
 }  // namespace airdos
 

@@ -10,11 +10,11 @@ namespace {
 
 constexpr int kNumRounds = 4;
 constexpr int kIterationsPerRound = 6;
-constexpr double kChi2Stereo = 7.815;  // 95 % of 3 degrees of freedom
-constexpr double kChi2Mono = 5.991;    // 95 % of 2
+constexpr double kChi2Stereo = 7.815;  // 95 %, 3 degrees of freedom
+constexpr double kChi2Mono = 5.991;    // 95 %, 2 degrees of freedom
 constexpr double kMinDepth_m = 0.05;
 constexpr double kConverged = 1e-8;
-constexpr std::size_t kMinRedundant = 20;  // observations that check each other
+constexpr std::size_t kMinRedundant = 20;  // observations that can check each other
 
 struct Residual {
   Eigen::Vector3d value;  // whitened; the last row is zero without a right observation
@@ -22,7 +22,7 @@ struct Residual {
   bool is_in_front = false;
 };
 
-/// `J_C` is the derivative of the residual by p_C.
+/// `J_C` is the derivative of the residual with respect to p_C.
 void Whiten(const Eigen::Matrix3d& J_C, const Eigen::Quaterniond& q_C_W,
             const PoseObservation& observation, Residual* residual) {
   const double variance_px2 = observation.sigma_px * observation.sigma_px;
@@ -31,7 +31,7 @@ void Whiten(const Eigen::Matrix3d& J_C, const Eigen::Quaterniond& q_C_W,
     residual->jacobian /= observation.sigma_px;
     return;
   }
-  const Eigen::Matrix3d J = J_C * q_C_W.toRotationMatrix();  // by p_W
+  const Eigen::Matrix3d J = J_C * q_C_W.toRotationMatrix();  // with respect to p_W
   Eigen::Matrix3d S = J * observation.covariance_W * J.transpose();
   if (!observation.has_right) {
     S.row(2).setZero();
@@ -43,9 +43,9 @@ void Whiten(const Eigen::Matrix3d& J_C, const Eigen::Quaterniond& q_C_W,
   llt.matrixL().solveInPlace(residual->jacobian);
 }
 
-/// r = L^-1 (z - pi(T_C_W p_W)) with its derivative by the tangent of T_W_C: p_C(delta) ~ p_C -
-/// delta_t + [p_C]_x delta_r. L L^T is the covariance of z - pi: of the pixels, and of the point
-/// where that is not exactly known.
+/// r = L^-1 (z - pi(T_C_W p_W)) and its derivative with respect to the tangent of T_W_C: p_C(delta)
+/// ~ p_C - delta_t + [p_C]_x delta_r. L L^T is the covariance of z - pi: of the pixels, plus that
+/// of the point if it is not known exactly.
 Residual Evaluate(const StereoCamera& camera, const Se3& T_C_W,
                   const PoseObservation& observation) {
   Residual residual;
@@ -68,8 +68,8 @@ double Chi2Bound(const PoseObservation& observation) {
   return observation.has_right ? kChi2Stereo : kChi2Mono;
 }
 
-/// Adds the prior's normal equations: e = Boxminus(T_W_C, mean); the Jacobian is close to identity
-/// for the small e that a prior allows.
+/// Adds the prior's normal equations: e = Boxminus(T_W_C, mean). Its Jacobian is taken as the
+/// identity, which is close for the small e that a prior allows.
 void AddPrior(const PosePrior& prior, const Matrix6d& information, const Se3& T_W_C, Matrix6d* H,
               Vector6d* b) {
   const Vector6d error = Boxminus(T_W_C, prior.T_W_C);
@@ -80,7 +80,7 @@ void AddPrior(const PosePrior& prior, const Matrix6d& information, const Se3& T_
   *b -= J.transpose() * information * error;
 }
 
-/// What does not change from step to step.
+/// What stays the same from iteration to iteration.
 struct Knowledge {
   const StereoCamera& camera;
   const std::vector<PoseObservation>& observations;
@@ -88,7 +88,7 @@ struct Knowledge {
   Matrix6d prior_information;
 };
 
-/// One Gauss-Newton step; false where the system cannot be solved.
+/// One Gauss-Newton step; false if the system cannot be solved.
 bool Step(const Knowledge& known, const std::vector<bool>& is_used, bool robust, Se3* T_W_C,
           double* step_norm) {
   const std::vector<PoseObservation>& observations = known.observations;
@@ -118,8 +118,8 @@ bool Step(const Knowledge& known, const std::vector<bool>& is_used, bool robust,
   return true;
 }
 
-/// Of few observations each can pull the pose to itself: those that the prior does not allow stay
-/// out. The bound is wide, as the prior's linearisation is coarse.
+/// With few observations, a single one can pull the pose towards itself, so those that contradict
+/// the prior are excluded. The bound is wide because the prior is linearised coarsely.
 void GateByPrior(const Knowledge& known, std::vector<bool>* is_possible) {
   constexpr double kMaxChi2 = 16;
   const Se3 T_C_W = known.prior->T_W_C.inverse();

@@ -5,7 +5,7 @@
 namespace airdos {
 namespace {
 constexpr double kSmallAngle =
-    1e-5;  // below it the series of second order is exact to double precision
+    1e-5;  // below it the second-order series is exact to double precision
 }  // namespace
 
 Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
@@ -25,7 +25,7 @@ Eigen::Quaterniond ExpSo3(const Eigen::Vector3d& rotation_vector) {
 }
 
 Eigen::Vector3d LogSo3(const Eigen::Quaterniond& q) {
-  const double sign = q.w() < 0 ? -1.0 : 1.0;  // the shorter way round
+  const double sign = q.w() < 0 ? -1.0 : 1.0;  // the shorter way around
   const double sine = q.vec().norm();
   const double cosine = sign * q.w();
   const double factor = sine < kSmallAngle ? 2.0 / cosine : 2.0 * std::atan2(sine, cosine) / sine;

@@ -9,10 +9,10 @@ namespace airdos {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// [v]_x, so that Skew(v) * w = v x w.
+/// The skew-symmetric matrix [v]_x: Skew(v) * w = v x w.
 Eigen::Matrix3d Skew(const Eigen::Vector3d& v);
 
-/// Rotation vector (rad) to unit quaternion and back. LogSo3 returns an angle in [0, pi].
+/// Rotation vector (rad) to unit quaternion, and back. The angle of LogSo3 is in [0, pi].
 Eigen::Quaterniond ExpSo3(const Eigen::Vector3d& rotation_vector);
 Eigen::Vector3d LogSo3(const Eigen::Quaterniond& q);
 
@@ -21,7 +21,7 @@ Eigen::Vector3d LogSo3(const Eigen::Quaterniond& q);
 Eigen::Matrix3d RightJacobianSo3(const Eigen::Vector3d& v);
 Eigen::Matrix3d RightJacobianInverseSo3(const Eigen::Vector3d& v);
 
-/// A rigid transform T_A_B: unit quaternion and translation. p_A = T_A_B * p_B.
+/// A rigid transform T_A_B as unit quaternion and translation: p_A = T_A_B * p_B.
 struct Se3 {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
@@ -32,10 +32,10 @@ struct Se3 {
   friend Eigen::Vector3d operator*(const Se3& T_A_B, const Eigen::Vector3d& p_B);
 };
 
-/// The tangent used everywhere: delta = (translation m, rotation rad), both in the body frame B,
-/// applied as
+/// The tangent used everywhere: delta = (translation in m, rotation in rad), both in the body frame
+/// B, applied as
 ///   translation' = translation + R * delta_t,   R' = R * Exp(delta_r).
-/// Boxplus(T, Boxminus(T2, T)) = T2.
+/// Boxminus is the inverse: Boxplus(T, Boxminus(T2, T)) = T2.
 Se3 Boxplus(const Se3& T_A_B, const Vector6d& delta);
 Vector6d Boxminus(const Se3& T_A_B2, const Se3& T_A_B);
 

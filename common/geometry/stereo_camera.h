@@ -6,8 +6,8 @@
 
 namespace airdos {
 
-/// Rectified pinhole pair. C is the left camera (x right, y down, z forward); the right camera's
-/// centre is (baseline_m, 0, 0) in C.
+/// A rectified pinhole stereo camera. C is the left camera (x right, y down, z forward); the right
+/// camera's centre is at (baseline_m, 0, 0) in C.
 struct StereoCamera {
   int width = 0;   ///< px
   int height = 0;  ///< px
@@ -17,23 +17,23 @@ struct StereoCamera {
   double cy_px = 0;
   double baseline_m = 0;
 
-  /// True where every number is finite and makes sense: positive sizes, focal lengths and baseline,
-  /// principal point in the image.
+  /// Whether every number is finite and plausible: positive sizes, focal lengths and baseline, and
+  /// a principal point inside the image.
   bool IsValid() const;
 
-  /// (u_left, v, u_right) in px of a point in C (paper, eq. 1). The point must lie in front of the
+  /// (u_left, v, u_right) in px of a point in C (paper, eq. 1). The point must be in front of the
   /// camera: p_C.z() > 0.
   Eigen::Vector3d ProjectStereo(const Eigen::Vector3d& p_C) const;
   /// (u_left, v) in px.
   Eigen::Vector2d Project(const Eigen::Vector3d& p_C) const;
-  /// d(u_left, v, u_right) / d p_C, 3 x 3, px per m.
+  /// d(u_left, v, u_right) / d p_C, 3 x 3, in px per m.
   Eigen::Matrix3d ProjectStereoJacobian(const Eigen::Vector3d& p_C) const;
 
-  /// The point in C of a stereo observation; nothing where the disparity is not positive.
+  /// The point in C of a stereo observation; nothing if the disparity is not positive.
   std::optional<Eigen::Vector3d> Triangulate(double u_left_px, double v_px,
                                              double u_right_px) const;
-  /// Covariance in m^2 of Triangulate() where u_left, v and u_right are independent with the given
-  /// standard deviation.
+  /// Covariance of Triangulate() in m^2, if u_left, v and u_right are independent and have the
+  /// given standard deviation.
   Eigen::Matrix3d TriangulationCovariance(const Eigen::Vector3d& p_C, double sigma_px) const;
 
   bool IsInImage(const Eigen::Vector2d& uv_px) const {

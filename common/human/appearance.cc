@@ -7,15 +7,15 @@
 namespace airdos {
 namespace {
 
-constexpr int kNumColumns = 8;  // samples across the torso and along it
+constexpr int kNumColumns = 8;  // sample grid over the torso: columns and rows
 constexpr int kNumRows = 12;
 constexpr int kNumThighSamples = 16;
 constexpr int kNumChannels = 3;
-// Chromaticities of clothes stay within these bounds; the first channel is brightness, 0..255.
+// The chromaticities of clothes stay within these bounds; the first channel is brightness, 0..255.
 constexpr std::array<double, kNumChannels> kChannelMin = {0, -0.35, -0.7};
 constexpr std::array<double, kNumChannels> kChannelMax = {255, 0.35, 0.7};
 
-// Shares one sample between the two bins next to it, so that noise moves a histogram smoothly.
+// Splits one sample between its two nearest bins, so that noise changes a histogram smoothly.
 void AddToHistogram(double value, int channel, std::array<float, Appearance::kNumBins>* histogram) {
   const std::size_t c = static_cast<std::size_t>(channel);
   const double unit =
@@ -28,7 +28,7 @@ void AddToHistogram(double value, int channel, std::array<float, Appearance::kNu
   (*histogram)[bin + 1] += static_cast<float>(share);
 }
 
-// Adds the pixel to the three histograms from `first` on; false outside the image.
+// Adds a pixel to the three histograms starting at `first`; false outside the image.
 bool AddPixel(const cv::Mat& image, const Eigen::Vector2d& uv_px, std::size_t first,
               Appearance* appearance) {
   if (!(uv_px.x() >= 0 && uv_px.y() >= 0 && uv_px.x() < image.cols && uv_px.y() < image.rows)) {
@@ -44,7 +44,7 @@ bool AddPixel(const cv::Mat& image, const Eigen::Vector2d& uv_px, std::size_t fi
   } else {
     bgr.fill(image.at<unsigned char>(v, u));
   }
-  // The constant keeps the chromaticity of black, which is all noise, near zero.
+  // The constant keeps the chromaticity of black, which is pure noise, near zero.
   const double sum = bgr[0] + bgr[1] + bgr[2] + 30;
   AddToHistogram((bgr[0] + bgr[1] + bgr[2]) / 3, 0, &appearance->histograms[first]);
   AddToHistogram((bgr[2] - bgr[1]) / sum, 1, &appearance->histograms[first + 1]);
@@ -53,7 +53,7 @@ bool AddPixel(const cv::Mat& image, const Eigen::Vector2d& uv_px, std::size_t fi
 }
 
 bool Normalise(std::size_t first, int num_samples, Appearance* appearance) {
-  // A region of which the image holds a corner only says nothing.
+  // A region of which only a corner is in the image is not informative.
   const bool is_seen = num_samples >= kNumThighSamples / 2;
   for (std::size_t h = first; h < first + kNumChannels; ++h) {
     for (float& bin : appearance->histograms[h]) {

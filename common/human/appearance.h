@@ -9,25 +9,25 @@
 
 namespace airdos {
 
-/// What somebody wears: one histogram each of brightness and two chromaticities (r - g and r + g -
-/// 2 b over r + g + b, which light and shade leave alone), on the torso and on the thighs. A
-/// histogram that was not seen is all zero.
+/// What a person wears: histograms of brightness and of two chromaticities ((r - g) and (r + g - 2
+/// b), both divided by r + g + b, so that they do not depend on light and shade), on the torso and
+/// on the thighs. A histogram that was not observed is all zeros.
 struct Appearance {
   static constexpr int kNumBins = 10;
   static constexpr int kNumHistograms = 6;  ///< torso, then thighs: brightness and chromaticities
   std::array<std::array<float, kNumBins>, kNumHistograms> histograms{};
 
-  /// Moves towards a newer one by `rate`, 0 to 1; histograms only one side has seen are taken
-  /// whole.
+  /// Blends in a newer appearance with weight `rate`, 0 to 1. Histograms that only one side has
+  /// observed are taken over unchanged.
   void Update(const Appearance& newer, double rate);
 };
 
-/// Reads the pixels (CV_8UC3, blue first, or CV_8UC1) within the torso and on the thighs of a
-/// person in the left image. Nothing where no body region lies in the image.
+/// Reads the pixels (CV_8UC3 in BGR order, or CV_8UC1) on the torso and thighs of a person in the
+/// left image. Nothing if no body region is in the image.
 std::optional<Appearance> MeasureAppearance(const cv::Mat& image, const BodyKeypoints& person,
                                             double min_confidence);
 
-/// Mean Bhattacharyya distance over the histograms that both have, 0 (equal) to 1; nothing where
+/// Mean Bhattacharyya distance over the histograms that both have, from 0 (equal) to 1; nothing if
 /// they share none.
 std::optional<double> AppearanceDistance(const Appearance& a, const Appearance& b);
 

@@ -10,8 +10,8 @@
 namespace airdos {
 namespace {
 
-// Adds one row to an optimal assignment of the rows before it by the shortest augmenting path over
-// reduced costs cost - row_potential - column_potential.
+// Extends an optimal assignment of the first rows by one row, along the shortest augmenting path
+// over the reduced costs cost - row_potential - column_potential.
 class HungarianSolver {
  public:
   explicit HungarianSolver(const Eigen::MatrixXd& cost)
@@ -76,26 +76,27 @@ class HungarianSolver {
 
 }  // namespace
 
-std::vector<std::optional<int>> Assign(const Eigen::MatrixXd& cost, double gate) {
-  AIRDOS_CHECK(std::isfinite(gate) && gate > 0);
+std::vector<std::optional<int>> Assign(const Eigen::MatrixXd& cost, double max_cost) {
+  AIRDOS_CHECK(std::isfinite(max_cost) && max_cost > 0);
   const Eigen::Index rows = cost.rows();
   const Eigen::Index columns = cost.cols();
-  // Every row may stay alone with one of the columns added on the right and every column with one
-  // of the rows added below; what is added pairs with itself for nothing.
+  // Each row can stay alone by taking one of the columns added on the right, and each column by
+  // taking one of the rows added below; added rows and columns pair with each other at no cost.
   Eigen::MatrixXd square = Eigen::MatrixXd::Zero(rows + columns, rows + columns);
-  square.topRightCorner(rows, rows).setConstant(gate / 2);
-  square.bottomLeftCorner(columns, columns).setConstant(gate / 2);
+  square.topRightCorner(rows, rows).setConstant(max_cost / 2);
+  square.bottomLeftCorner(columns, columns).setConstant(max_cost / 2);
   for (Eigen::Index r = 0; r < rows; ++r) {
     for (Eigen::Index c = 0; c < columns; ++c) {
-      const bool is_allowed = std::isfinite(cost(r, c)) && cost(r, c) < gate;
-      square(r, c) = is_allowed ? cost(r, c) : 2 * gate;
+      const bool is_allowed = std::isfinite(cost(r, c)) && cost(r, c) < max_cost;
+      square(r, c) = is_allowed ? cost(r, c) : 2 * max_cost;
     }
   }
   std::vector<std::optional<int>> partner(static_cast<std::size_t>(rows));
   const std::vector<int> row_of_column = HungarianSolver(square).Solve();
   for (Eigen::Index c = 0; c < columns; ++c) {
     const int r = row_of_column[static_cast<std::size_t>(c)];
-    if (r < rows && square(r, c) < gate) partner[static_cast<std::size_t>(r)] = static_cast<int>(c);
+    if (r < rows && square(r, c) < max_cost)
+      partner[static_cast<std::size_t>(r)] = static_cast<int>(c);
   }
   return partner;
 }

@@ -7,12 +7,12 @@
 
 namespace airdos {
 
-/// For each row of `cost` the column it is paired with, or nothing, so that
-///   sum of cost(row, column) over pairs + gate / 2 for each row and column without a partner
-/// is least: a pair is made only if it costs less than `gate`. Costs that are not finite forbid a
-/// pair. Hungarian method with potentials, O((rows + columns)^3); the same input always gives the
-/// same pairs.
-std::vector<std::optional<int>> Assign(const Eigen::MatrixXd& cost, double gate);
+/// For each row of `cost`, the column that it is paired with, or nothing, such that
+///   sum of cost(row, column) over pairs + max_cost / 2 for each row and column without a partner
+/// is minimal: a pair is made only if it costs less than `max_cost`. Costs that are not finite
+/// forbid a pair. Hungarian method with potentials, O((rows + columns)^3); the same input always
+/// gives the same pairs.
+std::vector<std::optional<int>> Assign(const Eigen::MatrixXd& cost, double max_cost);
 
 }  // namespace airdos
 

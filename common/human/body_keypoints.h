@@ -10,7 +10,7 @@
 
 namespace airdos {
 
-/// One joint of the body model as a detector saw it in one image; confidence 0 = not seen.
+/// One joint of the body model as detected in one image; confidence 0 means not seen.
 struct BodyKeypoint {
   double u_px = 0;
   double v_px = 0;
@@ -18,38 +18,39 @@ struct BodyKeypoint {
 
   Eigen::Vector2d uv_px() const { return {u_px, v_px}; }
 };
-/// One person in one image, by Joint.
+/// One person in one image, indexed by Joint.
 using BodyKeypoints = std::array<BodyKeypoint, kNumJoints>;
 
-/// Ways in which a detector confuses the sides of a body. kLowerLegs: knees and ankles; kLowerArms:
-/// elbows and wrists; kAll: every pair of joints.
+/// How a detector mixes up the sides of a body. kLowerLegs: knees and ankles; kLowerArms: elbows
+/// and wrists; kAll: every pair of joints.
 enum class SideSwap { kNone, kAll, kLowerLegs, kLowerArms };
 inline constexpr std::array<SideSwap, 4> kSideSwaps = {SideSwap::kNone, SideSwap::kAll,
                                                        SideSwap::kLowerLegs, SideSwap::kLowerArms};
 
-/// The joint whose place `joint` takes under the confusion; itself where it is not concerned.
+/// The joint that `joint` is mistaken for; `joint` itself if the swap does not affect it.
 int SwappedJoint(int joint, SideSwap swap);
-/// The person with the sides exchanged. Twice the same exchange gives the input.
+/// The person with the sides exchanged. Applying the same swap twice gives the input.
 BodyKeypoints SwapSides(const BodyKeypoints& person, SideSwap swap);
 
-/// How far off a keypoint is: a floor, growing with the person's size in the image and with falling
-/// confidence. sigma = max(min_px, per_height * height) * factor,
-/// factor = 1 + per_confidence * (full_confidence - confidence), between 1 and max_factor.
+/// Standard deviation of a keypoint: a floor, growing with the person's size in the image and with
+/// decreasing confidence. sigma = max(min_px, per_height * height) * factor, where factor = 1 +
+/// per_confidence * (full_confidence - confidence), limited to 1..max_factor.
 struct KeypointNoise {
   double min_px = 0.9;
-  double per_height = 0.009;      ///< of the person's standing height in px
-  double full_confidence = 0.85;  ///< from here on a joint counts as plainly seen
+  double per_height = 0.009;      ///< relative to the person's standing height in px
+  double full_confidence = 0.85;  ///< from here on a joint counts as clearly visible
   double per_confidence = 3.6;    ///< 1.9 times at confidence 0.6, 3 times at 0.3
   double max_factor = 4;
 
-  /// Standard deviation in px of u and of v.
+  /// Standard deviation of u and of v, px.
   double Sigma(double confidence, double height_px) const;
 };
 
-/// Height of a standing grown person, for the scale of noise and gates only.
+/// Height of a standing adult; used only to scale noise and gates.
 inline constexpr double kPersonHeightM = 1.7;
 
-/// Middle of the values, the lower of the two where their number is even. Nothing for no value.
+/// Median of the values, the lower of the two middle ones if their number is even. Nothing if there
+/// are none.
 std::optional<double> Median(std::vector<double> values);
 
 }  // namespace airdos

@@ -9,7 +9,7 @@
 namespace airdos {
 namespace {
 
-// Diameters, in parts of the standing height: of a limb with its clothes, of trunk and head.
+// Widths as fractions of the standing height: of a limb with its clothes, of trunk and head.
 constexpr double kLimb = 0.10;
 constexpr double kTrunk = 0.14;
 constexpr double kHead = 0.17;
@@ -30,7 +30,7 @@ class Painter {
     }
     PaintTrunk();
     PaintDisc(kNose, kHead * *height_px);
-    // Hands and feet go on beyond wrists and ankles.
+    // Hands and feet extend beyond wrists and ankles.
     for (const int joint : {kRightWrist, kLeftWrist, kRightAnkle, kLeftAnkle})
       PaintDisc(joint, 1.3 * kLimb * *height_px);
   }
@@ -45,15 +45,15 @@ class Painter {
   }
   const BodyKeypoint& Keypoint(int joint) const { return person_[static_cast<std::size_t>(joint)]; }
   cv::Point At(int joint) const {
-    // Far outside the image nothing is painted anyway, and OpenCV wants small numbers.
+    // Points far outside the image paint nothing anyway, and OpenCV needs small coordinates.
     const auto pixel = [](double px) {
       return static_cast<int>(std::lround(std::clamp(px, -1e4, 1e4)));
     };
     return {pixel(Keypoint(joint).u_px), pixel(Keypoint(joint).v_px)};
   }
 
-  /// From the longest of the visible limbs against a grown person's, and the extent of the joints:
-  /// foreshortening makes each only shorter.
+  /// From the visible limb that is longest relative to an adult's, and from the extent of the
+  /// joints: foreshortening can only make each of them shorter.
   std::optional<double> StandingHeight() const {
     int num_seen = 0;
     double height_px = 0;
@@ -81,7 +81,7 @@ class Painter {
 
   void PaintLine(int a, int b, double width_px) {
     if (!IsSeen(a) || !IsSeen(b)) return;
-    // OpenCV draws lines of at most 32767 px, with round ends.
+    // OpenCV draws lines up to 32767 px thick, with round ends.
     const int thickness = std::max(1, static_cast<int>(std::lround(width_px)));
     cv::line(*mask_, At(a), At(b), cv::Scalar(255), thickness);
   }

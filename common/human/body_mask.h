@@ -8,10 +8,10 @@
 
 namespace airdos {
 
-/// Where people are in an image, as far as their joints tell: limbs and trunk as thick lines, the
-/// trunk filled, the head a disc, all as thick as a person of that size is, clothes included.
-/// CV_8UC1 of `size`, 255 on people, 0 elsewhere. Joints of less than `min_confidence` do not
-/// count; a person of fewer than three others is left out.
+/// Where people are in an image, judging by their joints: limbs and trunk as thick lines, the trunk
+/// filled, the head a disc, each as thick as a person of that size, including clothes. CV_8UC1 of
+/// `size`, 255 on people, 0 elsewhere. Joints with a confidence below `min_confidence` are ignored,
+/// and a person with fewer than three other joints is left out.
 cv::Mat DrawBodyMask(const std::vector<BodyKeypoints>& people, const cv::Size& size,
                      double min_confidence);
 

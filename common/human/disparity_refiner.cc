@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace airdos {
@@ -13,7 +14,7 @@ struct Patch {
   int v;
   int half;
   double mean;
-  double norm;  // square root of the sum of squared differences from the mean
+  double norm;  // square root of the sum of squared deviations from the mean
 };
 
 bool IsInside(const cv::Mat& image, int u, int v, int half) {
@@ -25,7 +26,7 @@ Patch MakePatch(const cv::Mat& image, int u, int v, int half) {
   std::int64_t sum_squares = 0;
   for (int y = v - half; y <= v + half; ++y) {
     const unsigned char* row = image.ptr<unsigned char>(y) + (u - half);
-    int row_sum = 0;  // of 32 bits, so that whole vectors are added at a time
+    int row_sum = 0;  // 32 bits, so that the compiler can vectorise the sum
     int row_squares = 0;
     for (int x = 0; x <= 2 * half; ++x) {
       row_sum += row[x];
@@ -59,7 +60,7 @@ struct Peak {
   double correlation;
 };
 
-// The best place of the patch on its row in `to`, at centre columns `first` to `last`.
+// The best match of the patch on its row in `to`, with the centre in columns `first` to `last`.
 std::optional<Peak> BestOnRow(const cv::Mat& from, const Patch& patch, const cv::Mat& to, int first,
                               int last) {
   first = std::max(first, patch.half);

@@ -9,12 +9,12 @@
 namespace airdos {
 namespace {
 
-constexpr double kLimbMotion = 0.02;    // unforeseen motion of a joint, of the height, a frame
-constexpr double kMaxSquaredError = 9;  // of one joint in the verdict on sides
-constexpr std::size_t kMinJoints = 3;   // on which a distance between two people rests
-constexpr int kMaxMissedForSwap = 2;    // limbs move on: later the sides cannot be told apart
-// A joint whose flow is off the person's by more than this part of the height follows somebody
-// else.
+constexpr double kLimbMotion = 0.02;    // unpredicted motion of a joint per frame, of the height
+constexpr double kMaxSquaredError = 9;  // of one joint, when the sides are judged
+constexpr std::size_t kMinJoints = 3;   // needed to measure the distance between two people
+constexpr int kMaxMissedForSwap = 2;    // later, limbs have moved too far to tell the sides
+// A joint whose flow deviates from the person's by more than this fraction of the height follows
+// somebody else.
 constexpr double kMaxFlowSpread = 0.2;
 
 std::optional<Eigen::Vector2d> MedianVector(const std::vector<Eigen::Vector2d>& vectors) {
@@ -58,7 +58,7 @@ void HumanTrack::Predict(const std::array<std::optional<Eigen::Vector2d>, kNumJo
   }
   Eigen::Vector2d common_px = shift_px + velocity_px_;
   std::optional<Eigen::Vector2d> median = MedianVector(moves);
-  // Whoever is hidden by now must not be dragged along by the one in front.
+  // Whoever is hidden by now must not be dragged along by the person in front.
   if (median && num_missed_ > 0 && (*median - common_px).norm() > kMaxFlowSpread * height_px_) {
     median.reset();
   }
@@ -89,8 +89,10 @@ std::optional<double> HumanTrack::Cost(const PersonDetection& detection) const {
   const std::optional<double> distance_px = MedianDistance(detection.left);
   if (!distance_px) return std::nullopt;
   const double motion = *distance_px / height_px_;
-  if (motion > options_.max_motion + options_.max_motion_growth * num_missed_) return std::nullopt;
-  const double sigma = options_.motion_sigma + options_.motion_sigma_growth * num_missed_;
+  if (motion > options_.max_motion_per_height + options_.max_motion_growth_per_height * num_missed_)
+    return std::nullopt;
+  const double sigma =
+      options_.motion_sigma_per_height + options_.motion_sigma_growth_per_height * num_missed_;
   return std::pow(motion / sigma, 2) + LooksCost(detection);
 }
 
@@ -126,7 +128,7 @@ bool HumanTrack::HasSwap(const BodyKeypoints& left, SideSwap swap, double min_ga
   const BodyKeypoints swapped = SwapSides(left, swap);
   double gain = 0;
   for (std::size_t joint = 0; joint < left_.size(); ++joint) {
-    // Joints that the swap leaves in place gain nothing.
+    // Joints that the swap leaves in place do not contribute.
     const double confidence =
         std::min({left_[joint].confidence, left[joint].confidence, swapped[joint].confidence});
     if (confidence < options_.min_confidence) continue;

@@ -10,12 +10,12 @@
 
 namespace airdos {
 
-// A person in one frame: the left detection, and the right one with its sides agreeing where there
-// is one.
+// A person in one frame: the left detection and, if there is one, the right detection with its
+// sides made to agree.
 struct HumanTracker::Observation {
   PersonDetection detection;
   std::optional<BodyKeypoints> right;
-  SideSwap right_swap = SideSwap::kNone;  // by which the right one was made to agree
+  SideSwap right_swap = SideSwap::kNone;  // applied to the right one to make it agree
 };
 
 HumanTracker::HumanTracker(const HumanTrackerOptions& options, HumanId first_id)
@@ -23,8 +23,8 @@ HumanTracker::HumanTracker(const HumanTrackerOptions& options, HumanId first_id)
 
 TrackedFrame HumanTracker::Process(const StereoCamera& camera, const PeopleFrame& frame) {
   const StereoImages images{frame.left_gray, frame.right_gray};
-  const StereoMatching matching = MatchStereo(options_.matcher, camera, frame.left, frame.right);
-  const std::vector<Observation> observations = Observe(camera, frame, matching);
+  const PersonPairing pairing = PairPeople(options_.matcher, camera, frame.left, frame.right);
+  const std::vector<Observation> observations = Observe(camera, frame, pairing);
   flow_.SetImage(frame.left_gray);
   shift_px_ = flow_.shift_px();
   if (options_.use_shift_vote) {
@@ -36,7 +36,7 @@ TrackedFrame HumanTracker::Process(const StereoCamera& camera, const PeopleFrame
   const std::vector<std::optional<int>> track_of = FindTracks(observations);
 
   TrackedFrame result;
-  result.num_rejected = static_cast<int>(matching.unpaired_right.size());
+  result.num_rejected = static_cast<int>(pairing.unpaired_right.size());
   std::vector<bool> is_seen(tracks_.size(), false);
   const auto report = [&result](std::optional<TrackedHuman> human) {
     if (human) result.humans.push_back(std::move(*human));
@@ -69,7 +69,7 @@ TrackedFrame HumanTracker::Process(const StereoCamera& camera, const PeopleFrame
 
 void HumanTracker::PredictTracks() {
   std::vector<Eigen::Vector2d> from, guess;
-  std::vector<std::pair<std::size_t, std::size_t>> owner;  // track, joint
+  std::vector<std::pair<std::size_t, std::size_t>> owner;  // (track, joint)
   for (std::size_t track = 0; track < tracks_.size(); ++track) {
     const BodyKeypoints& left = tracks_[track].left();
     for (std::size_t joint = 0; joint < left.size(); ++joint) {
@@ -89,7 +89,7 @@ void HumanTracker::PredictTracks() {
 
 std::vector<HumanTracker::Observation> HumanTracker::Observe(const StereoCamera& camera,
                                                              const PeopleFrame& frame,
-                                                             const StereoMatching& matching) const {
+                                                             const PersonPairing& pairing) const {
   const auto at = [](const std::vector<BodyKeypoints>& people, int i) -> const BodyKeypoints& {
     return people[static_cast<std::size_t>(i)];
   };
@@ -98,14 +98,14 @@ std::vector<HumanTracker::Observation> HumanTracker::Observe(const StereoCamera&
     return MeasureAppearance(image, left, options_.track.min_confidence);
   };
   std::vector<Observation> observations;
-  for (const StereoPair& pair : matching.pairs) {
+  for (const PersonPair& pair : pairing.pairs) {
     const BodyKeypoints& left = at(frame.left, pair.left);
     const double height_px = kPersonHeightM * pair.disparity_px / camera.baseline_m;
     observations.push_back({{left, pair.disparity_px, height_px, appearance(left)},
                             SwapSides(at(frame.right, pair.right), pair.right_swap),
                             pair.right_swap});
   }
-  for (const int i : matching.unpaired_left) {
+  for (const int i : pairing.unpaired_left) {
     const BodyKeypoints& left = at(frame.left, i);
     observations.push_back(
         {{left, std::nullopt, 0, appearance(left)}, std::nullopt, SideSwap::kNone});
@@ -117,16 +117,16 @@ std::vector<std::optional<int>> HumanTracker::FindTracks(
     const std::vector<Observation>& observations) const {
   std::vector<std::optional<int>> track_of(observations.size());
   std::vector<bool> is_taken(tracks_.size(), false);
-  // Whom both images show comes first: depth makes the choice surer.
-  Associate(observations, true, options_.gate, &is_taken, &track_of);
+  // People seen in both images come first: depth makes the association more certain.
+  Associate(observations, true, options_.max_squared_sigmas, &is_taken, &track_of);
   if (options_.use_left_only) {
-    Associate(observations, false, options_.left_only_gate, &is_taken, &track_of);
+    Associate(observations, false, options_.left_only_max_squared_sigmas, &is_taken, &track_of);
   }
   return track_of;
 }
 
 void HumanTracker::Associate(const std::vector<Observation>& observations, bool is_stereo,
-                             double gate, std::vector<bool>* is_track_taken,
+                             double max_squared_sigmas, std::vector<bool>* is_track_taken,
                              std::vector<std::optional<int>>* track_of) const {
   std::vector<std::size_t> rows, columns;
   for (std::size_t i = 0; i < observations.size(); ++i) {
@@ -144,7 +144,7 @@ void HumanTracker::Associate(const std::vector<Observation>& observations, bool 
               .value_or(std::numeric_limits<double>::infinity());
     }
   }
-  const std::vector<std::optional<int>> partner = Assign(cost, gate);
+  const std::vector<std::optional<int>> partner = Assign(cost, max_squared_sigmas);
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (!partner[r]) continue;
     const std::size_t track = columns[static_cast<std::size_t>(*partner[r])];
@@ -168,18 +168,19 @@ bool HumanTracker::IsReported(const JointObservations& joints, int num_seen) con
   return num_seen >= options_.min_seen_to_report && NumObserved(joints) >= options_.min_joints;
 }
 
-// One image in sixty or so has the sides of a person exchanged. Where the two detections disagree,
-// one of them is wrong and the track only has to say which; where they agree, hardly ever both are.
+// About one image in sixty has a person's sides exchanged. If the two detections disagree, one of
+// them is wrong and the track only has to tell which; if they agree, it is very rare that both are
+// wrong.
 SideSwap HumanTracker::FindSwap(const Observation& observation, const HumanTrack& track) const {
   const BodyKeypoints& left = observation.detection.left;
   if (observation.right_swap != SideSwap::kNone) {
     const bool is_left_wrong =
-        track.HasSwap(left, observation.right_swap, options_.min_swap_gain_doubtful);
+        track.HasSwap(left, observation.right_swap, options_.min_doubtful_swap_gain_squared_sigmas);
     return is_left_wrong ? observation.right_swap : SideSwap::kNone;
   }
   if (observation.right) return SideSwap::kNone;
   for (const SideSwap swap : kSideSwaps) {
-    if (track.HasSwap(left, swap, options_.min_swap_gain)) return swap;
+    if (track.HasSwap(left, swap, options_.min_swap_gain_squared_sigmas)) return swap;
   }
   return SideSwap::kNone;
 }

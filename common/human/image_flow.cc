@@ -10,7 +10,7 @@
 namespace airdos {
 namespace {
 
-constexpr int kShiftReduction = 4;  // the shift of the whole image is measured at this scale
+constexpr int kShiftReduction = 4;  // scale at which the whole image's shift is measured
 
 cv::Point2f ToPoint(const Eigen::Vector2d& uv_px) {
   return {static_cast<float>(uv_px.x()), static_cast<float>(uv_px.y())};
@@ -37,7 +37,7 @@ void ImageFlow::MeasureShift(const cv::Mat& gray) {
   cv::Mat reduced;
   cv::resize(gray, reduced, {gray.cols / kShiftReduction, gray.rows / kShiftReduction}, 0, 0,
              cv::INTER_AREA);
-  // A header that owns the pixels alone: converting into small_ would overwrite them.
+  // A separate header that owns these pixels: converting into small_ would overwrite them.
   const cv::Mat last = std::move(small_);
   small_ = cv::Mat();
   reduced.convertTo(small_, CV_32F);
@@ -66,7 +66,8 @@ std::vector<std::optional<Eigen::Vector2d>> ImageFlow::Follow(
   const cv::TermCriteria criteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 20, 0.03);
   cv::calcOpticalFlowPyrLK(last_pyramid_, pyramid_, from, to, is_there, cv::noArray(), window,
                            options_.num_levels, criteria, cv::OPTFLOW_USE_INITIAL_FLOW);
-  // The way back starts from the opposite of the guess, not from the answer, so that it is a test.
+  // The way back starts from the reverse of the guess, not from the answer, so that it is a real
+  // test.
   for (std::size_t i = 0; i < from.size(); ++i) back[i] = to[i] + (from[i] - ToPoint(guess_px[i]));
   cv::calcOpticalFlowPyrLK(pyramid_, last_pyramid_, to, back, is_back, cv::noArray(), window,
                            options_.num_levels, criteria, cv::OPTFLOW_USE_INITIAL_FLOW);

@@ -8,28 +8,30 @@
 
 namespace airdos {
 
+/// Settings of the ImageFlow.
 struct ImageFlowOptions {
-  int window_px = 13;                ///< side of the patch that is followed
+  int window_px = 13;                ///< side of the tracked patch
   int num_levels = 4;                ///< pyramid levels above the full image
-  double max_return_error_px = 1;    ///< between a point and its way there and back
-  double min_shift_response = 0.05;  ///< below it the shift of the whole image is taken as none
+  double max_return_error_px = 1;    ///< allowed error after tracking forth and back
+  double min_shift_response = 0.05;  ///< below it the whole image's shift is taken as zero
 };
 
-/// Follows points from one image of a camera to its next by pyramidal Lucas-Kanade, there and back.
+/// Follows points from one image of a camera to the next by pyramidal Lucas-Kanade, with a
+/// forward-backward check.
 class ImageFlow {
  public:
   explicit ImageFlow(const ImageFlowOptions& options) : options_(options) {}
 
-  /// Takes the next image (CV_8UC1). An empty one, or one of another size than the last, breaks the
-  /// chain: nothing can be followed into it.
+  /// Sets the next image (CV_8UC1). If it is empty or differs in size from the last one, the chain
+  /// is broken: nothing can be followed into it.
   void SetImage(const cv::Mat& gray);
 
-  /// Shift in px of most of the image from the last to this one, as the camera turns; zero where it
-  /// is not clear.
+  /// Shift in px of most of the image from the last one to this one, as caused by the camera's
+  /// rotation; zero if it is unclear.
   const Eigen::Vector2d& shift_px() const { return shift_px_; }
 
-  /// Where points of the last image are in this one, with a first guess each; nothing for a point
-  /// that leaves the image or does not come back to where it started.
+  /// Positions in this image of points of the last one, given an initial guess for each; nothing
+  /// for a point that leaves the image or fails the forward-backward check.
   std::vector<std::optional<Eigen::Vector2d>> Follow(
       const std::vector<Eigen::Vector2d>& from_px,
       const std::vector<Eigen::Vector2d>& guess_px) const;
@@ -40,7 +42,7 @@ class ImageFlow {
   ImageFlowOptions options_;
   std::vector<cv::Mat> last_pyramid_;
   std::vector<cv::Mat> pyramid_;
-  cv::Mat small_;  // for the shift of the whole image
+  cv::Mat small_;  // reduced image, for the shift of the whole image
   cv::Mat hanning_;
   cv::Size size_;
   Eigen::Vector2d shift_px_ = Eigen::Vector2d::Zero();

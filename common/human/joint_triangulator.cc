@@ -9,7 +9,8 @@
 namespace airdos {
 namespace {
 
-// What the two detections, or detection and images, say of one joint before it becomes a point.
+// One joint as measured by the two detections, or by one detection and the images, before
+// triangulation.
 struct Measurement {
   double u_left_px;
   double v_px;
@@ -49,8 +50,8 @@ std::optional<TriangulatedJoint> MakeObservation(const JointTriangulatorOptions&
   joint.sigma_px = m.sigma_u_px;
   joint.confidence = m.confidence;
   joint.p_C = *p_C;
-  // (u_left, v, u_right) with u_right = u_left - d: as Var(u_left) = Var(u_right) = s^2 and
-  // Var(d) is known, Cov(u_left, u_right) = s^2 - Var(d) / 2.
+  // (u_left, v, u_right) with u_right = u_left - d: from Var(u_left) = Var(u_right) = s^2 and the
+  // known Var(d) follows Cov(u_left, u_right) = s^2 - Var(d) / 2.
   const double variance_u = m.sigma_u_px * m.sigma_u_px;
   const double common = variance_u - m.sigma_disparity_px * m.sigma_disparity_px / 2;
   Eigen::Matrix3d covariance_uvu;
@@ -60,7 +61,7 @@ std::optional<TriangulatedJoint> MakeObservation(const JointTriangulatorOptions&
   return joint;
 }
 
-// Disparity of the joint, not of the surface before it, from the images.
+// Disparity from the images, of the joint rather than of the surface in front of it.
 std::optional<double> DisparityFromImages(const JointTriangulatorOptions& options,
                                           const StereoCamera& camera, const StereoImages& images,
                                           const Eigen::Vector2d& uv_left_px, double expected_px,
@@ -72,7 +73,7 @@ std::optional<double> DisparityFromImages(const JointTriangulatorOptions& option
   return SurfaceToJoint(options, camera, *surface);
 }
 
-// The weighted mean of two measurements of one quantity, and its standard deviation.
+// The weighted mean of two measurements of the same quantity, and its standard deviation.
 struct Fused {
   double value;
   double sigma;
@@ -95,11 +96,12 @@ std::optional<TriangulatedJoint> TriangulateJoint(const JointTriangulatorOptions
   const double sigma_l = options.noise.Sigma(l.confidence, height_px);
   const double sigma_r = options.noise.Sigma(r.confidence, height_px);
   const double sigma_difference = std::hypot(sigma_l, sigma_r);
-  if (std::abs(l.v_px - r.v_px) > options.max_row_error * sigma_difference) return std::nullopt;
+  if (std::abs(l.v_px - r.v_px) > options.max_row_error_sigmas * sigma_difference)
+    return std::nullopt;
   const double disparity_px = l.u_px - r.u_px;
   const double extent_px = ExtentPx(options, camera, person_px);
   if (std::abs(disparity_px - person_px) >
-      options.max_extent_error * std::hypot(sigma_difference, extent_px)) {
+      options.max_extent_error_sigmas * std::hypot(sigma_difference, extent_px)) {
     return std::nullopt;
   }
   const Fused row = Fuse(l.v_px, sigma_l, r.v_px, sigma_r);
@@ -111,13 +113,13 @@ std::optional<TriangulatedJoint> TriangulateJoint(const JointTriangulatorOptions
                 sigma_difference,
                 std::min(l.confidence, r.confidence)};
   if (options.is_refined && m.confidence >= options.min_refined_confidence) {
-    // Keypoints and the person as a whole both say where to look.
+    // Both the keypoints and the person as a whole tell where to search.
     const Fused expected = Fuse(disparity_px, sigma_difference, person_px, extent_px);
     const std::optional<double> refined =
         DisparityFromImages(options, camera, images, {l.u_px, row.value}, expected.value,
                             3 * expected.sigma + 1, height_px);
     if (refined) {
-      // With the disparity known, the right keypoint measures u_left as well.
+      // Once the disparity is known, the right keypoint measures u_left as well.
       const Fused u_left = Fuse(l.u_px, sigma_l, r.u_px + *refined, sigma_r);
       m.u_left_px = u_left.value;
       m.sigma_u_px = u_left.sigma;

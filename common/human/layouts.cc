@@ -7,7 +7,7 @@
 namespace airdos {
 namespace {
 
-// Index in the layout of each body joint, in the order of Joint; -1 = to be made up.
+// For each body joint, in the order of Joint, its index in the layout; -1 if it must be computed.
 using Table = std::array<int, kNumJoints>;
 constexpr Table kCoco18Table = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13};
 // 0 nose 1-2 eyes 3-4 ears 5/6 shoulders 7/8 elbows 9/10 wrists 11/12 hips 13/14 knees 15/16

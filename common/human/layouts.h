@@ -8,16 +8,16 @@
 
 namespace airdos {
 
-/// The orders in which detectors give the joints of a person.
+/// The joint orders that detectors use.
 enum class KeypointLayout { kCoco18, kCoco17, kHalpe26 };
 
-/// Joints in one detection of this layout.
+/// Number of keypoints per detection in this layout.
 int NumKeypoints(KeypointLayout layout);
 
-/// The 14 body joints of one detection. COCO-17 has no neck: it becomes the middle of the
-/// shoulders, with the lower of their confidences, where both are seen. Joints that are not finite
-/// or whose confidence is not positive count as not seen; confidences above 1 become 1. Nothing
-/// where the number of keypoints is not the layout's.
+/// The 14 body joints of one detection. COCO-17 has no neck: it is set to the middle of the
+/// shoulders, with the lower of their confidences, if both are seen. Joints that are not finite or
+/// whose confidence is not positive count as not seen; confidences above 1 are set to 1. Nothing if
+/// the number of keypoints is not the layout's.
 std::optional<BodyKeypoints> MapToBody(KeypointLayout layout,
                                        const std::vector<BodyKeypoint>& detection);
 

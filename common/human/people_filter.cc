@@ -8,7 +8,7 @@
 namespace airdos {
 namespace {
 
-constexpr double kNominalStep_s = 0.1;  // of PeopleFilterOptions::wobble_m
+constexpr double kNominalStep_s = 0.1;  // time step that PeopleFilterOptions::wobble_m refers to
 constexpr double kAccelerationRate = 0.2;
 
 std::optional<int> PlaceOf(int joint) {
@@ -17,7 +17,7 @@ std::optional<int> PlaceOf(int joint) {
   return static_cast<int>(it - kBodyJoints.begin());
 }
 
-/// Derivative of T_W_C p_C by the tangent of T_W_C.
+/// Derivative of T_W_C p_C with respect to the tangent of T_W_C.
 Eigen::Matrix<double, 3, 6> PointJacobian(const Eigen::Matrix3d& R_W_C,
                                           const Eigen::Vector3d& p_C) {
   Eigen::Matrix<double, 3, 6> J;
@@ -44,14 +44,14 @@ void PeopleFilter::Predict(double step_s) {
 }
 
 std::optional<PeopleFilter::Match> PeopleFilter::MatchJoints(
-    const Person& person, const PersonMeasurement& measurement, const Se3& T_W_C,
+    const Person& person, const HumanMeasurement& measurement, const Se3& T_W_C,
     const Matrix6d& pose_covariance) const {
   Match match;
   const Eigen::Matrix3d R_W_C = T_W_C.rotation.toRotationMatrix();
   std::vector<Eigen::Vector3d> residuals;
   std::vector<Eigen::Matrix3d> measured;
   const double max_error2 = options_.max_joint_sigmas * options_.max_joint_sigmas;
-  for (const PersonMeasurement::Joint& joint : measurement.joints) {
+  for (const HumanMeasurement::Joint& joint : measurement.joints) {
     const std::optional<int> place = PlaceOf(joint.joint);
     if (!place || !person.is_known[static_cast<std::size_t>(*place)]) continue;
     const int row = 3 + 3 * *place;
@@ -85,17 +85,17 @@ std::optional<PeopleFilter::Match> PeopleFilter::MatchJoints(
   return match;
 }
 
-std::vector<PersonConstraint> PeopleFilter::Constrain(const std::vector<PersonMeasurement>& people,
-                                                      const Se3& T_W_C,
-                                                      const Matrix6d& pose_covariance) const {
-  std::vector<PersonConstraint> constraints;
-  for (const PersonMeasurement& measurement : people) {
+std::vector<HumanConstraint> PeopleFilter::Constrain(const std::vector<HumanMeasurement>& people,
+                                                     const Se3& T_W_C,
+                                                     const Matrix6d& pose_covariance) const {
+  std::vector<HumanConstraint> constraints;
+  for (const HumanMeasurement& measurement : people) {
     const auto known = people_.find(measurement.id);
     if (known == people_.end() || known->second.num_seen < options_.min_seen_frames) continue;
     const Person& person = known->second;
     const auto match = MatchJoints(person, measurement, T_W_C, pose_covariance);
     if (!match) continue;
-    PersonConstraint constraint;
+    HumanConstraint constraint;
     constraint.id = measurement.id;
     constraint.p_C = match->p_C;
     for (const int place : match->places) {
@@ -133,7 +133,8 @@ void PeopleFilter::Correct(const Match& match, const Matrix6d& pose_covariance,
 
 void PeopleFilter::LearnAcceleration(const Match& match, const Matrix6d& pose_covariance,
                                      Person* person) const {
-  // What all joints share is the body's step; its variance is compared with what was expected.
+  // The component common to all joints is the body's step; its square is compared with the expected
+  // variance.
   const auto n = static_cast<int>(match.places.size());
   Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(3, 3 * n);
   for (int a = 0; a < n; ++a) mean.middleCols<3>(3 * a) = Eigen::Matrix3d::Identity() / n;
@@ -143,7 +144,7 @@ void PeopleFilter::LearnAcceleration(const Match& match, const Matrix6d& pose_co
   const Eigen::Vector3d error = mean * match.residual_W;
   const double ratio = error.dot(expected.ldlt().solve(error)) / 3;
   if (!std::isfinite(ratio)) return;
-  // Robust: one bad frame counts no more than three times what was expected.
+  // Robust: one bad frame counts at most three times the expected variance.
   const double factor = 1 + kAccelerationRate * (std::min(ratio, 3.0) - 1);
   person->acceleration_m_s2 =
       std::clamp(person->acceleration_m_s2 * std::sqrt(factor),
@@ -151,10 +152,10 @@ void PeopleFilter::LearnAcceleration(const Match& match, const Matrix6d& pose_co
                  options_.max_acceleration_factor * options_.acceleration_m_s2);
 }
 
-void PeopleFilter::AddNewJoints(const PersonMeasurement& measurement, const Se3& T_W_C,
+void PeopleFilter::AddNewJoints(const HumanMeasurement& measurement, const Se3& T_W_C,
                                 const Matrix6d& pose_covariance, Person* person) const {
   const Eigen::Matrix3d R_W_C = T_W_C.rotation.toRotationMatrix();
-  for (const PersonMeasurement::Joint& joint : measurement.joints) {
+  for (const HumanMeasurement::Joint& joint : measurement.joints) {
     const std::optional<int> place = PlaceOf(joint.joint);
     if (!place || person->is_known[static_cast<std::size_t>(*place)]) continue;
     const int row = 3 + 3 * *place;
@@ -168,14 +169,14 @@ void PeopleFilter::AddNewJoints(const PersonMeasurement& measurement, const Se3&
   }
 }
 
-void PeopleFilter::Update(const std::vector<PersonMeasurement>& people, const Se3& T_W_C,
+void PeopleFilter::Update(const std::vector<HumanMeasurement>& people, const Se3& T_W_C,
                           const Matrix6d& pose_covariance) {
   for (auto& [id, person] : people_) ++person.num_missed;
-  for (const PersonMeasurement& measurement : people) {
+  for (const HumanMeasurement& measurement : people) {
     Person& person = people_.try_emplace(measurement.id, Begin()).first->second;
     const auto match = MatchJoints(person, measurement, T_W_C, pose_covariance);
     if (person.num_seen > 0 && !match) {
-      person = Begin();  // not where it can be: another person, or one who jumped
+      person = Begin();  // in an impossible place: another person, or a jump
     } else if (match) {
       if (person.num_seen >= options_.min_seen_frames) {
         LearnAcceleration(*match, pose_covariance, &person);

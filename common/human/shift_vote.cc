@@ -8,9 +8,9 @@
 namespace airdos {
 namespace {
 
-constexpr double kSpread = 0.12;     // of the height: how well people keep to the common shift
-constexpr double kMinWeight = 0.05;  // pairs that look less alike have no vote
-constexpr double kMinGain = 0.3;     // of a whole vote, by which another shift must be better
+constexpr double kSpread = 0.12;     // of the height: deviation of people from the common shift
+constexpr double kMinWeight = 0.05;  // pairs that look less alike do not vote
+constexpr double kMinGain = 0.3;     // in votes; by this much another shift must be better
 
 struct Vote {
   std::size_t track;
@@ -19,7 +19,7 @@ struct Vote {
   double spread_px;
 };
 
-// `votes` are sorted by track.
+// `votes` must be sorted by track.
 double Score(const std::vector<Vote>& votes, const Eigen::Vector2d& shift_px) {
   double score = 0;
   for (std::size_t first = 0; first < votes.size();) {

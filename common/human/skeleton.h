@@ -5,8 +5,8 @@
 
 namespace airdos {
 
-/// The body model of the paper in COCO-18 numbers: 14 joints, 14 segments of constant length (eq.
-/// 3), 9 rigid parts (eq. 4, 5). Same tables as in lcmtypes/README.md.
+/// The body model of the paper in COCO-18 numbering: 14 joints, 14 segments of constant length (eq.
+/// 3), 9 rigid parts (eq. 4 and 5). The same tables are in lcmtypes/README.md.
 enum Joint : int {
   kNose = 0,
   kNeck = 1,
@@ -25,10 +25,11 @@ enum Joint : int {
 };
 inline constexpr int kNumJoints = 14;
 
+/// Two joints at a constant distance.
 struct Segment {
   int joint_a;
   int joint_b;
-  double typical_length_m;  ///< of a grown person, for gating only
+  double typical_length_m;  ///< of an adult, for gating only
 };
 inline constexpr int kNumSegments = 14;
 inline constexpr std::array<Segment, kNumSegments> kSegments = {
@@ -47,7 +48,7 @@ inline constexpr std::array<Segment, kNumSegments> kSegments = {
      {kLeftKnee, kLeftAnkle, 0.42},
      {kNeck, kNose, 0.25}}};
 
-/// A rigid part: the joints that follow one motion. Unused places hold -1.
+/// A rigid part: joints that share one motion. Unused places hold -1.
 struct RigidPart {
   int num_joints;
   std::array<int, 5> joints;

@@ -8,7 +8,7 @@
 
 namespace airdos {
 
-/// Puts numbers into bytes, little endian whatever the machine.
+/// Serialises numbers as bytes, little-endian on every machine.
 class ByteWriter {
  public:
   void U8(std::uint8_t value) { bytes_.push_back(value); }
@@ -16,7 +16,7 @@ class ByteWriter {
   void I64(std::int64_t value) { Integer(static_cast<std::uint64_t>(value), 8); }
   void F32(float value);
   void F64(double value);
-  void Text(const std::string& text);  ///< length (u32), then the bytes
+  void Text(const std::string& text);  ///< length (u32), followed by the bytes
 
   const std::vector<std::uint8_t>& bytes() const { return bytes_; }
   std::vector<std::uint8_t> Take() { return std::move(bytes_); }
@@ -26,7 +26,7 @@ class ByteWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// Takes them out again. Beyond the end every number is 0 and ok() is false.
+/// Reads them back. Past the end, every number is 0 and ok() is false.
 class ByteReader {
  public:
   ByteReader(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -37,8 +37,8 @@ class ByteReader {
   float F32();
   double F64();
   std::string Text();
-  /// A count of things of at least `min_bytes` each: 0 and not ok() where the bytes that are left
-  /// cannot hold as many.
+  /// Reads the number of elements of at least `min_bytes` each. If the remaining bytes cannot hold
+  /// that many, returns 0 and ok() becomes false.
   std::uint32_t Count(std::size_t min_bytes);
 
   bool ok() const { return ok_; }

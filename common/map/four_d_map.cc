@@ -5,7 +5,7 @@
 namespace airdos {
 namespace {
 
-// Type 2 is that of MapDelta.
+// Chunk types; type 2 is MapDelta's.
 constexpr std::uint32_t kHeadType = 1;
 constexpr std::uint32_t kEndType = 3;
 
@@ -77,7 +77,7 @@ FourDMap ReadFourDMap(const std::string& path, MapFileSummary* summary) {
   });
   if (num_senseless > 0) {
     summary->drop_reason =
-        std::to_string(num_senseless) + " chunks from the first on that makes no sense";
+        std::to_string(num_senseless) + " chunks, starting at the first invalid one";
   }
   return map;
 }

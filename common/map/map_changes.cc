@@ -10,13 +10,13 @@ namespace {
 
 constexpr std::uint32_t kChangesType = 2;
 
-// Flags of a frame.
+// Flags of a frame record.
 constexpr std::uint8_t kHasLive = 1;
 constexpr std::uint8_t kHasRefined = 2;
 constexpr std::uint8_t kHasGroundTruth = 4;
 constexpr std::uint8_t kTrustedWithPeople = 8;
 
-// Fewest bytes that one thing takes, to bound counts.
+// Minimum size of each kind of record, to bound counts.
 constexpr std::size_t kFrameBytes = 18;
 constexpr std::size_t kLandmarkBytes = 28;
 constexpr std::size_t kHumanBytes = 36;
@@ -131,8 +131,8 @@ void Merge(const MapFrame& newer, MapFrame* frame) {
   if (newer.ground_truth) frame->ground_truth = newer.ground_truth;
 }
 
-/// Motions lead from the frame before; the last word on a person comes when that one has left the
-/// optimizer's window, and so without them: those that were known stay.
+/// Part motions start at the previous frame. The last report of a person comes when that frame has
+/// left the optimizer's window, and so has no motions: the ones already known are kept.
 void Merge(const MapHuman& newer, MapHuman* human) {
   std::map<int, MapPartMotion> known = std::move(human->part_motions);
   *human = newer;

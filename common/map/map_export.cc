@@ -1,20 +1,22 @@
 #include "common/map/map_export.h"
 
 #include <cinttypes>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "common/human/skeleton.h"
 #include "common/map/byte_io.h"
 #include "common/util/error.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A file that is written from front to end; Close() throws InputError where any of it failed.
+/// A file written sequentially; Close() throws InputError if any write failed.
 class OutputFile {
  public:
   explicit OutputFile(const std::string& path) : path_(path), file_(path, std::ios::binary) {
@@ -35,8 +37,8 @@ class OutputFile {
   std::ofstream file_;
 };
 
-/// Rows of a trajectory in order of image numbers, whose times go forward: whoever reads it takes
-/// for granted that they do. Others are left out, and a comment says how many.
+/// Rows of a trajectory in order of image numbers. Readers take for granted that times increase, so
+/// rows whose time does not are left out, and a comment states how many.
 class TrajectoryRows {
  public:
   void Add(std::int64_t utime, const Se3& pose) {
@@ -50,7 +52,7 @@ class TrajectoryRows {
   std::string Text() const {
     if (num_left_out_ == 0) return rows_;
     return "# left out: " + std::to_string(num_left_out_) +
-           " poses whose time is not later than that of an image before them\n" + rows_;
+           " poses whose time is not later than that of an earlier image\n" + rows_;
   }
 
  private:
@@ -62,11 +64,7 @@ class TrajectoryRows {
 std::string KittiRow(const Se3& pose) {
   const Eigen::Matrix4d m = pose.matrix();
   std::string row;
-  char number[40];
-  for (int i = 0; i < 12; ++i) {
-    std::snprintf(number, sizeof number, "%s%.9e", i == 0 ? "" : " ", m(i / 4, i % 4));
-    row += number;
-  }
+  for (int i = 0; i < 12; ++i) row += Format("%s%.9e", i == 0 ? "" : " ", m(i / 4, i % 4));
   return row + "\n";
 }
 
@@ -146,17 +144,18 @@ void ExportPeople(const FourDMap& map, const std::string& folder, std::vector<st
   }
 }
 
-std::string JointsToJson(const MapHuman& human, Eigen::Vector3f MapJoint::*place) {
-  std::string text;
-  char entry[120];
+/// Keys stay in the order in which they are set, and numbers are the floats of the map in as few
+/// digits as give the same float again.
+using Json = nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool,
+                                  std::int64_t, std::uint64_t, float>;
+
+Json JointsToJson(const MapHuman& human, Eigen::Vector3f MapJoint::*place) {
+  Json joints = Json::object();
   for (const auto& [id, joint] : human.joints) {
     const Eigen::Vector3f& p_W = joint.*place;
-    std::snprintf(entry, sizeof entry, "%s\"%d\": [%.4f, %.4f, %.4f]", text.empty() ? "" : ", ", id,
-                  static_cast<double>(p_W.x()), static_cast<double>(p_W.y()),
-                  static_cast<double>(p_W.z()));
-    text += entry;
+    joints[std::to_string(id)] = {p_W.x(), p_W.y(), p_W.z()};
   }
-  return "{" + text + "}";
+  return joints;
 }
 
 }  // namespace
@@ -167,12 +166,9 @@ std::string TumRow(std::int64_t utime, const Se3& T_W_B) {
       utime < 0 ? 0 - static_cast<std::uint64_t>(utime) : static_cast<std::uint64_t>(utime);
   const Eigen::Vector3d& p = T_W_B.translation;
   const Eigen::Quaterniond& q = T_W_B.rotation;
-  char row[400];
-  std::snprintf(row, sizeof row,
-                "%s%" PRIu64 ".%06" PRIu64 " %.9f %.9f %.9f %.12f %.12f %.12f %.12f\n",
+  return Format("%s%" PRIu64 ".%06" PRIu64 " %.9f %.9f %.9f %.12f %.12f %.12f %.12f\n",
                 utime < 0 ? "-" : "", magnitude / kUsPerS, magnitude % kUsPerS, p.x(), p.y(), p.z(),
                 q.x(), q.y(), q.z(), q.w());
-  return row;
 }
 
 std::optional<Se3> TorsoPose(const MapHuman& human) {
@@ -201,7 +197,7 @@ std::optional<Se3> TorsoPose(const MapHuman& human) {
   T_W_H.translation = 0.5 * (p_neck + p_hips);
   const Eigen::Vector3d down = p_hips - p_neck;
   const Eigen::Vector3d forward = (p_right - p_left).cross(down);
-  constexpr double kMinAreaM2 = 1e-4;  // hips 1 cm apart below a spine of 1 cm
+  constexpr double kMinAreaM2 = 1e-4;  // hips 1 cm apart, below a spine 1 cm long
   if (!(forward.norm() > kMinAreaM2)) return T_W_H;
   Eigen::Matrix3d R_W_H;
   R_W_H.col(1) = down.normalized();
@@ -212,19 +208,15 @@ std::optional<Se3> TorsoPose(const MapHuman& human) {
 }
 
 std::string HumanToJson(FrameId frame, HumanId human, const MapHuman& state) {
-  std::string lengths;
-  char entry[60];
-  for (const auto& [id, length_m] : state.segment_lengths_m) {
-    std::snprintf(entry, sizeof entry, "%s\"%d\": %.4f", lengths.empty() ? "" : ", ", id,
-                  static_cast<double>(length_m));
-    lengths += entry;
-  }
-  return "{\"seq\": " + std::to_string(frame.value) +
-         ", \"utime\": " + std::to_string(state.utime) +
-         ", \"track\": " + std::to_string(human.value) +
-         ", \"joints\": " + JointsToJson(state, &MapJoint::p_W) +
-         ", \"measured\": " + JointsToJson(state, &MapJoint::p_W_measured) +
-         ", \"segment_lengths_m\": {" + lengths + "}}";
+  Json lengths = Json::object();
+  for (const auto& [id, length_m] : state.segment_lengths_m) lengths[std::to_string(id)] = length_m;
+  const Json line = {{"seq", frame.value},
+                     {"utime", state.utime},
+                     {"track", human.value},
+                     {"joints", JointsToJson(state, &MapJoint::p_W)},
+                     {"measured", JointsToJson(state, &MapJoint::p_W_measured)},
+                     {"segment_lengths_m", std::move(lengths)}};
+  return line.dump();
 }
 
 std::vector<std::string> ExportNames(const std::string& folder, const std::string& prefix) {
@@ -247,9 +239,9 @@ std::vector<std::string> ExportMap(const FourDMap& map, const std::string& prefi
                                    const std::string& group, OutputFolder* results) {
   const std::string stage = results->PathOf(".airdos_export");
   std::error_code error;
-  fs::remove_all(stage, error);  // of an export that was killed
+  fs::remove_all(stage, error);  // left by an export that was killed
   fs::create_directories(stage + "/people", error);
-  if (error) throw InputError(stage + ": cannot be made: " + error.message());
+  if (error) throw InputError(stage + ": cannot be created: " + error.message());
   std::vector<std::string> paths;
   try {
     ExportTrajectories(map, stage, &paths);

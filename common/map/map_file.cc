@@ -20,7 +20,7 @@ namespace {
 
 constexpr char kMagic[] = "AIRDOSM\n";
 constexpr std::size_t kHeadBytes = 12;
-constexpr std::uint32_t kChunkMagic = 0x4B4E4843;  // "CHNK" little endian
+constexpr std::uint32_t kChunkMagic = 0x4B4E4843;  // "CHNK", little-endian
 constexpr std::size_t kChunkHeadBytes = 12;
 constexpr int kTypeBytes = 4;
 constexpr int kCompressionLevel = 3;
@@ -42,7 +42,7 @@ std::vector<std::uint8_t> Compress(const std::vector<std::uint8_t>& raw) {
   return packed;
 }
 
-/// Everything or nothing: false (errno says why) where not all bytes were taken.
+/// Writes all bytes; false (see errno) if not all of them could be written.
 bool WriteAll(int descriptor, const std::vector<std::uint8_t>& bytes) {
   std::size_t done = 0;
   while (done < bytes.size()) {
@@ -54,13 +54,13 @@ bool WriteAll(int descriptor, const std::vector<std::uint8_t>& bytes) {
   return true;
 }
 
-/// Why there is no whole chunk at `position`, or an empty text and the chunk.
+/// Parses the chunk at `position`. Returns why there is no complete chunk, or an empty text.
 std::string ParseChunk(const std::vector<std::uint8_t>& bytes, std::size_t position,
                        MapChunk* chunk, std::size_t* next) {
   const std::size_t num_left = bytes.size() - position;
-  if (num_left < kChunkHeadBytes) return "the file ends within the head of a chunk";
+  if (num_left < kChunkHeadBytes) return "the file ends within the header of a chunk";
   ByteReader head(bytes.data() + position, kChunkHeadBytes);
-  if (head.U32() != kChunkMagic) return "no chunk begins here";
+  if (head.U32() != kChunkMagic) return "no chunk starts here";
   const std::size_t raw_size = head.U32();
   const std::size_t packed_size = head.U32();
   if (raw_size > kMaxChunkBytes || packed_size > kMaxChunkBytes) return "a chunk is too large";
@@ -146,11 +146,11 @@ MapFileSummary ReadMapFile(const std::string& path,
 MapFileSummary ParseMapFile(const std::vector<std::uint8_t>& bytes, const std::string& name,
                             const std::function<void(const MapChunk&)>& handle) {
   if (bytes.size() < kHeadBytes || std::memcmp(bytes.data(), kMagic, 8) != 0) {
-    throw InputError(name + ": is no map file (or ends within its first 12 bytes)");
+    throw InputError(name + ": is not a map file (or ends within its first 12 bytes)");
   }
   const std::uint32_t version = ByteReader(bytes.data() + 8, 4).U32();
   if (version != kMapFileVersion) {
-    throw InputError(name + ": is of version " + std::to_string(version) +
+    throw InputError(name + ": has version " + std::to_string(version) +
                      ", this program reads version " + std::to_string(kMapFileVersion));
   }
   MapFileSummary summary;

@@ -9,40 +9,41 @@
 
 namespace airdos {
 
-// The container of the 4-D map: a crash-safe file of chunks. All numbers little endian.
+// The container of the 4-D map: a crash-safe file of chunks. All numbers are little-endian.
 //
 //   file  = "AIRDOSM\n" (8 bytes), version (u32), chunk*
 //   chunk = "CHNK" (4 bytes), raw size (u32), packed size (u32), payload
 //
-// The payload is one zstd frame, with zstd's own content checksum, of the chunk's type (u32) and
-// its content. A chunk reaches the system in one write and is never changed afterwards, so whatever
-// ends the writer leaves a file whose last chunk at most is cut short.
+// The payload is one zstd frame, with zstd's content checksum, of the chunk's type (u32) and
+// content. Each chunk is handed to the operating system in a single write and never changed
+// afterwards, so however the writer ends, at most the last chunk of the file is incomplete.
 
 inline constexpr std::uint32_t kMapFileVersion = 1;
-/// Raw, with type; or packed. The recorder closes a chunk at 8 MB, and a packed one of 1 kB may
-/// claim as much as this.
+/// Limit for a chunk, both uncompressed (including its type) and compressed. The recorder closes a
+/// chunk at 8 MB; a compressed chunk of 1 kB may claim to hold this much.
 inline constexpr std::size_t kMaxChunkBytes = 16u << 20;
 
+/// A chunk's type and uncompressed content.
 struct MapChunk {
   std::uint32_t type = 0;
   std::vector<std::uint8_t> bytes;
 };
 
-/// Appends chunks to a new file; an existing one is replaced, or gone on with.
+/// Appends chunks to a file: a new one, which replaces any existing file, or an existing one.
 class MapFileWriter {
  public:
-  /// Throws InputError naming the file where it cannot be created.
+  /// Throws InputError naming the file if it cannot be created.
   explicit MapFileWriter(const std::string& path);
-  /// Goes on behind the first `num_bytes` of a file, which ReadMapFile() found to be good
-  /// (num_bytes_used); what lies behind them is cut off.
+  /// Continues after the first `num_bytes` of a file, which ReadMapFile() found to be valid
+  /// (num_bytes_used); whatever follows them is cut off.
   MapFileWriter(const std::string& path, std::int64_t num_bytes);
   ~MapFileWriter();
   MapFileWriter(const MapFileWriter&) = delete;
   MapFileWriter& operator=(const MapFileWriter&) = delete;
 
-  /// Hands one chunk to the operating system: from then on a kill of the process cannot lose it.
-  /// Throws InputError naming the file and the cause (disk full) where that fails; what was written
-  /// of the chunk is cut off again, and the writer may be used further.
+  /// Hands one chunk to the operating system; once this returns, killing the process cannot lose
+  /// it. Throws InputError naming the file and the cause (such as a full disk) if that fails.
+  /// Whatever was written of the chunk is then cut off again, and the writer remains usable.
   void Append(const MapChunk& chunk);
   std::int64_t num_bytes() const { return num_bytes_; }
 
@@ -52,17 +53,18 @@ class MapFileWriter {
   std::int64_t num_bytes_ = 0;
 };
 
-/// How far a file could be read: up to the last chunk that is complete and whose checksum holds.
+/// How much of a file could be read: up to the last chunk that is complete and has a valid
+/// checksum.
 struct MapFileSummary {
   std::int64_t num_chunks = 0;
   std::int64_t num_bytes_used = 0;
-  std::int64_t num_bytes_dropped = 0;  ///< behind the last good chunk
-  std::string drop_reason;             ///< empty where nothing was dropped
+  std::int64_t num_bytes_dropped = 0;  ///< after the last valid chunk
+  std::string drop_reason;             ///< empty if nothing was dropped
 };
 
-/// Hands over the chunks in order. Throws InputError naming the file where it cannot be read, is no
-/// map file or is of another version. Any damage behind the head costs only the rest of the file;
-/// no length in the file is believed before it is checked.
+/// Passes on the chunks in order. Throws InputError naming the file if it cannot be read, is not a
+/// map file or has another version. Any damage after the header costs only the rest of the file; no
+/// length in the file is trusted before it has been checked.
 MapFileSummary ReadMapFile(const std::string& path,
                            const std::function<void(const MapChunk&)>& handle);
 

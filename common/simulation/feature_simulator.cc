@@ -23,8 +23,8 @@ void Check(const SimulationOptions& options) {
   };
   require(options.num_frames >= 2, "needs at least two frames");
   require(options.step_s > 0, "the time step must be positive");
-  require(options.camera.IsValid(), "the camera makes no sense");
-  require(0 < options.nearest_m && options.nearest_m < options.farthest_m, "bad limits of depth");
+  require(options.camera.IsValid(), "the camera is invalid");
+  require(0 < options.nearest_m && options.nearest_m < options.farthest_m, "invalid depth limits");
   require(options.static_per_frame >= 0, "a negative number of static points");
   require(options.point_sigma_m >= 0 && options.pixel_sigma_px >= 0, "a negative sigma");
   for (const ObjectGroup& group : options.objects) {
@@ -34,7 +34,7 @@ void Check(const SimulationOptions& options) {
   }
 }
 
-/// The measurement without error; nothing where the point is out of view.
+/// The error-free measurement; nothing if the point is out of view.
 std::optional<Eigen::Vector3d> Look(const SimulationOptions& options, const Se3& T_W_C,
                                     const Eigen::Vector3d& p_W) {
   const Eigen::Vector3d p_C = T_W_C.inverse() * p_W;
@@ -93,8 +93,8 @@ class Simulator {
   const SimulationOptions& options_;
   Random random_;
   SimulatedSequence sequence_;
-  std::set<int> in_map_;      // landmarks that were measured before
-  std::vector<int> tracked_;  // those of the last frame
+  std::set<int> in_map_;      // landmarks that have been measured before
+  std::vector<int> tracked_;  // landmarks of the last frame
 };
 
 void Simulator::MoveCamera() {
@@ -126,7 +126,7 @@ void Simulator::MoveCamera() {
   }
 }
 
-/// Enough of them that every frame sees more than it may use.
+/// Enough landmarks that every frame sees more than it may use.
 void Simulator::ScatterLandmarks() {
   const int per_frame = 20 + 12 * options_.static_per_frame;
   for (std::size_t i = 0; i < sequence_.frames.size(); i += 4) {
@@ -134,9 +134,10 @@ void Simulator::ScatterLandmarks() {
     for (int k = 0; k < per_frame / 4; ++k) {
       const double z = random_.Uniform(options_.nearest_m, options_.farthest_m);
       const StereoCamera& camera = options_.camera;
-      const Eigen::Vector3d p_C(
-          (random_.Uniform(-0.2, 1.2) * camera.width - camera.cx_px) / camera.fx_px * z,
-          (random_.Uniform(-0.2, 1.2) * camera.height - camera.cy_px) / camera.fy_px * z, z);
+      const double v_px = random_.Uniform(-0.2, 1.2) * camera.height;
+      const double u_px = random_.Uniform(-0.2, 1.2) * camera.width;
+      const Eigen::Vector3d p_C((u_px - camera.cx_px) / camera.fx_px * z,
+                                (v_px - camera.cy_px) / camera.fy_px * z, z);
       sequence_.landmarks_W.push_back(T_W_C * p_C);
     }
   }
@@ -146,7 +147,7 @@ MovingObject Simulator::TryObject(const ObjectGroup& group) {
   const Se3& T_W_C = sequence_.frames[sequence_.frames.size() / 2].T_W_C;
   const double z = random_.Uniform(options_.object_nearest_m, options_.object_farthest_m);
   Eigen::Vector3d middle_W;
-  if (options_.path.max_pan_deg > 0) {  // all around what the camera pans over
+  if (options_.path.max_pan_deg > 0) {  // all around the area that the camera pans over
     const double limit_rad = kRadPerDeg * options_.path.pan_limit_deg;
     const double bearing_rad = random_.Uniform(-limit_rad, limit_rad);
     middle_W =
@@ -219,7 +220,7 @@ void Simulator::PlaceObjects() {
 }
 
 void Simulator::ObserveLandmarks(SimulatedFrame* frame) {
-  // Tracked ones first, then those known from before, then new ones.
+  // Tracked landmarks first, then those known from earlier frames, then new ones.
   std::vector<int> order = tracked_;
   for (const int landmark : in_map_) order.push_back(landmark);
   const int num_landmarks = static_cast<int>(sequence_.landmarks_W.size());

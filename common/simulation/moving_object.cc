@@ -10,7 +10,7 @@
 namespace airdos {
 namespace {
 
-// The face in COCO-18, after the body's joints.
+// Points of the face in COCO-18, after the body's joints.
 enum FacePoint : int { kRightEye = 14, kLeftEye = 15, kRightEar = 16, kLeftEar = 17 };
 constexpr int kMaxPersonPoints = 18;
 
@@ -24,7 +24,8 @@ Eigen::Vector3d Hang(double angle_rad, double length_m) {
   return {length_m * std::sin(angle_rad), length_m * std::cos(angle_rad), 0};
 }
 
-/// A person in own axes: x forward, y down, z to the right; hips' middle at the origin.
+/// A person in local axes: x forward, y down, z to the right, with the origin midway between the
+/// hips.
 std::array<Eigen::Vector3d, kMaxPersonPoints> Pose(double phase_rad, double swing_rad,
                                                    double sitting, double scale) {
   std::array<Eigen::Vector3d, kMaxPersonPoints> p;
@@ -56,7 +57,7 @@ std::array<Eigen::Vector3d, kMaxPersonPoints> Pose(double phase_rad, double swin
   return p;
 }
 
-/// Speed, in parts of the cruising speed, and turn at a time.
+/// Speed, as a fraction of the cruising speed, and rotation at a given time.
 struct Manoeuvre {
   double speed = 1;
   double heading_rad = 0;
@@ -90,7 +91,8 @@ std::vector<RootState> SimulateRoot(const RootMotion& motion, int num_frames, do
                                     Random* random) {
   const double duration_s = num_frames * step_s;
   const double start_s = random->Uniform(0.25, 0.6) * duration_s;
-  const double turn_rad = random->Sign() * random->Uniform(M_PI / 3, 2 * M_PI / 3);
+  const double turn_sign = random->Sign();
+  const double turn_rad = turn_sign * random->Uniform(M_PI / 3, 2 * M_PI / 3);
   const double pause_s = random->Uniform(1.0, 2.0);
   const double keep = std::exp(-step_s / motion.velocity_memory_s);
   const double cruise_m_s = motion.velocity_W_m_s.norm();
@@ -149,8 +151,10 @@ MovingObject MakePerson(const std::vector<RootState>& root, double step_s, int n
 
 MovingObject MakeBox(const std::vector<RootState>& root, int num_points, Random* random) {
   MovingObject box;
-  const Eigen::Vector3d half_m(random->Uniform(0.5, 1.25), random->Uniform(0.5, 0.9),
-                               random->Uniform(0.5, 0.9));
+  Eigen::Vector3d half_m;
+  half_m.z() = random->Uniform(0.5, 0.9);
+  half_m.y() = random->Uniform(0.5, 0.9);
+  half_m.x() = random->Uniform(0.5, 1.25);
   std::vector<Eigen::Vector3d> shape;
   for (int i = 0; i < num_points; ++i) {
     Eigen::Vector3d point;
@@ -159,7 +163,7 @@ MovingObject MakeBox(const std::vector<RootState>& root, int num_points, Random*
     point[side] = random->Sign() * half_m[side];
     shape.push_back(point);
     box.body_points.push_back(i);
-    // Three distances to earlier points hold a point in place.
+    // Three distances to earlier points fix a point.
     for (int other = std::max(0, i - 3); other < i; ++other) box.segments.emplace_back(other, i);
   }
   for (const RootState& state : root) {

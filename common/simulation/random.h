@@ -8,8 +8,9 @@
 
 namespace airdos {
 
-/// Seeded random numbers that are the same with every standard library: the engine is specified to
-/// the bit, the standard's distributions are not.
+/// Seeded random numbers that are the same with every standard library: the standard specifies the
+/// engine exactly, but not its distributions. Never make two draws in one expression: the compiler
+/// would choose which one comes first.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -19,7 +20,7 @@ class Random {
     return low + (high - low) * kUnit * static_cast<double>(engine_() >> 11);
   }
   double Sign() { return Uniform(-1, 1) < 0 ? -1.0 : 1.0; }
-  /// Box and Muller, one of the pair.
+  /// Box-Muller transform, using one value of the pair.
   double Normal(double sigma) {
     const double radius = std::sqrt(-2 * std::log(1 - Uniform(0, 1)));
     return sigma * radius * std::cos(2 * M_PI * Uniform(0, 1));

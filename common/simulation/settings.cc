@@ -8,7 +8,8 @@
 namespace airdos {
 namespace {
 
-/// The start's errors per axis are the paper's "before BA" divided by the square root of three.
+/// One of the paper's groups. Its start errors per axis are the paper's "before BA" divided by the
+/// square root of three.
 struct PaperGroup {
   int num_frames;
   int static_per_frame;
@@ -17,7 +18,7 @@ struct PaperGroup {
   int num_points;
   double sigma_m;
   double sigma_deg;
-  double farthest_m;  ///< calibrated on the static row alone: 3.3 to 4.3 cm, 0.10 to 0.20 degrees
+  double farthest_m;  ///< calibrated with the static row only: 3.3 to 4.3 cm, 0.10 to 0.20 degrees
 };
 constexpr PaperGroup kGroups[] = {{38, 36, 2, 2, 16, 0.092, 0.283, 40},
                                   {50, 30, 2, 2, 14, 0.102, 0.366, 35},
@@ -66,7 +67,7 @@ std::map<std::string, SimulationOptions> MakeSettings() {
                                                        {"swap", Behaviour::kSwapped}};
   for (const auto& [name, behaviour] : harmful) {
     for (const int num : {8, 30}) {
-      // An even number, for those who are mistaken for each other.
+      // An even number, because people are confused in pairs.
       settings[name + std::to_string(num)] = MakeWalkers(num, behaviour, 6);
     }
   }

@@ -14,16 +14,15 @@ const std::vector<std::string>& PaperGroups();
 
 /// All named settings:
 ///   group1 .. group4   the paper's groups: people and rigid objects, points with 5 cm of noise
-///   walkers3 .. 50     ten walking people, stereo noise of 1 px, so many static landmarks a frame,
-///                      11 to 22 degrees of turn a frame
-///   turn8, stop8, sit8, swap8, and the same with 30   as walkers8 and walkers30, but six of the
-///   ten
-///                      turn, stop, sit down or are mistaken for each other
-///   erratic8, 30       as walkers8 and walkers30, but nobody keeps a velocity: 2 m/s^2 all the
-///   time
+///   walkers3 .. 50     ten walking people, stereo noise of 1 px, this many static landmarks per
+///                      frame, 11 to 22 degrees of rotation per frame
+///   turn8, stop8, sit8, swap8, and the same with 30   like walkers8 and walkers30, but six of the
+///                      ten turn, stop, sit down or are confused with each other
+///   erratic8, 30       like walkers8 and walkers30, but nobody keeps a constant velocity: 2 m/s^2
+///                      all the time
 const std::vector<std::string>& SettingNames();
 
-/// Throws InputError for a name that is not among them.
+/// Throws InputError for an unknown name.
 SimulationOptions SettingByName(const std::string& name, std::uint64_t seed);
 
 }  // namespace airdos

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// Ends the process with file and line if `condition` does not hold, in every build type. For
+/// Terminates the process with file and line if `condition` does not hold, in every build type. For
 /// programmer errors only: bad input throws InputError or is counted.
 #define AIRDOS_CHECK(condition)                                                          \
   do {                                                                                   \

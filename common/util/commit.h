@@ -3,8 +3,8 @@
 
 namespace airdos {
 
-/// Seven digits of the commit that was built; "unknown" where git could not tell. In a source file
-/// that each build writes (cmake/write_commit.cmake).
+/// First seven digits of the commit that was built, or "unknown" if git could not tell. Defined in
+/// a source file that every build generates (cmake/write_commit.cmake).
 extern const char kCommit[];
 
 }  // namespace airdos

@@ -7,7 +7,7 @@
 
 namespace airdos {
 
-/// SHA-256 over everything that was added, as `sha256sum` prints it.
+/// SHA-256 of everything added, as printed by `sha256sum`.
 class Digest {
  public:
   Digest();
@@ -16,7 +16,7 @@ class Digest {
   Digest& operator=(Digest&&) noexcept;
 
   void Add(const void* data, std::size_t size);
-  /// Lower-case hexadecimal, 64 characters. More may be added afterwards.
+  /// Lower-case hexadecimal, 64 characters. More bytes may be added afterwards.
   std::string Hex() const;
 
  private:

@@ -6,8 +6,8 @@
 
 namespace airdos {
 
-/// A file, a configuration value or an argument that cannot be used. The text is one line that
-/// names the file, the key and the value; a main prints it and exits with kExitBadInput.
+/// A file, configuration value or argument that cannot be used. The text is one line naming the
+/// file, the key and the value; main() prints it and exits with kExitBadInput.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

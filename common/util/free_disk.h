@@ -6,11 +6,11 @@
 
 namespace airdos {
 
-/// What a recorder leaves to others: 100 MB, or a hundredth of a disk of less than 10 GB.
+/// Space that a recorder leaves free for others: 100 MB, or 1 % of a disk smaller than 10 GB.
 std::int64_t DiskReserveBytes(std::int64_t capacity_bytes);
 
 /// Why nothing more should be written to the file system that holds `path`, or an empty text. A
-/// file system that does not say what is free is taken to have room.
+/// file system that does not report its free space is assumed to have enough.
 std::string WhyDiskIsFull(const std::string& path);
 
 }  // namespace airdos

@@ -5,8 +5,8 @@
 
 namespace airdos {
 
-/// An integer that cannot be mistaken for another kind of id. Ordered, so that it can be the key of
-/// a std::map.
+/// An integer id that cannot be confused with other kinds of ids. Ordered, so it can be a key in a
+/// std::map.
 template <class Tag>
 struct Id {
   std::int64_t value = 0;
@@ -17,8 +17,8 @@ struct Id {
 };
 
 using FrameId = Id<struct FrameTag>;        ///< image number `seq`
-using LandmarkId = Id<struct LandmarkTag>;  ///< static landmark, never used again in a session
-using HumanId = Id<struct HumanTag>;        ///< track of one person, never used again in a session
+using LandmarkId = Id<struct LandmarkTag>;  ///< static landmark, never reused in a session
+using HumanId = Id<struct HumanTag>;        ///< track of one person, never reused in a session
 
 }  // namespace airdos
 

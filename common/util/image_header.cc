@@ -20,9 +20,10 @@ bool StartsWith(const std::uint8_t* data, std::size_t size, std::string_view tex
 }
 
 constexpr std::string_view kPngSignature("\x89PNG\r\n\x1A\n", 8);
-constexpr std::size_t kPngChunkFrame = 12;  // length, name and check sum around its content
+constexpr std::size_t kPngChunkFrame = 12;  // length, name and checksum around its content
 
-/// The wish of an EXIF block ("MM" or "II", 42, offset of the directory, entries of 12 bytes).
+/// The orientation in an EXIF block ("MM" or "II", 42, offset of the directory, entries of 12
+/// bytes).
 int Orientation(const std::uint8_t* tiff, std::size_t size) {
   constexpr std::int64_t kOrientationTag = 0x0112;
   const bool is_big = StartsWith(tiff, size, "MM");
@@ -47,8 +48,8 @@ int Orientation(const std::uint8_t* tiff, std::size_t size) {
 }
 
 std::optional<ImageHeader> ReadPng(const std::uint8_t* data, std::size_t size) {
-  // Signature, then length and name of the first chunk, which must be IHDR: width, height, bits,
-  // colour type.
+  // Signature, then length and name of the first chunk, which must be IHDR: width, height, bit
+  // depth, colour type.
   if (size < 33 || !StartsWith(data + 12, size - 12, "IHDR")) return std::nullopt;
   ImageHeader header{BigEndian(data + 16, 4), BigEndian(data + 20, 4)};
   header.is_png = true;
@@ -67,21 +68,20 @@ std::optional<ImageHeader> ReadPng(const std::uint8_t* data, std::size_t size) {
   return header;
 }
 
-/// Start of frame, whatever the process: C0 to CF but for tables (C4), JPG (C8) and conditioning
-/// (CC).
+/// A start of frame of any process: C0 to CF except tables (C4), JPG (C8) and conditioning (CC).
 bool IsFrameMarker(std::uint8_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }
 
-/// Inside of compressed data an FF is followed by 00, so what is found is a scan, or lies in a
-/// thumbnail.
+/// Within compressed data, FF is always followed by 00, so whatever is found here starts a scan, of
+/// the picture or of a thumbnail.
 int CountScans(const std::uint8_t* data, std::size_t size) {
   int num_scans = 0;
   for (std::size_t i = 0; i + 1 < size; ++i) num_scans += data[i] == 0xFF && data[i + 1] == 0xDA;
   return num_scans;
 }
 
-/// The segments before the first scan, one after the other: at() is that of the marker's FF.
+/// Iterates over the segments before the first scan; at() is the position of the marker's FF.
 class JpegSegments {
  public:
   JpegSegments(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) { Settle(); }
@@ -96,7 +96,7 @@ class JpegSegments {
   }
 
  private:
-  /// Over padding; ends where there is no marker, or one that has no length or lies about it.
+  /// Skips padding; ends if there is no marker, or one with a missing or wrong length.
   void Settle() {
     while (at_ + 4 <= size_ && data_[at_] == 0xFF && data_[at_ + 1] == 0xFF) ++at_;
     is_valid_ = at_ + 4 <= size_ && data_[at_] == 0xFF && marker() >= 0xC0 &&
@@ -159,8 +159,9 @@ bool IsJpegCutShort(const std::uint8_t* data, std::size_t size) {
     scan = segment.at();
     if (segment.marker() == kStartOfScan) break;
   }
-  // Thumbnails lie before the scan and have an end of their own. In a scan an FF is followed by 00
-  // or a restart, so this is no chance find. From behind, where it usually is.
+  // Thumbnails come before the scan and have their own end marker. In a scan, FF is followed by 00
+  // or a restart marker, so a match is no accident. Searched backwards, since it is usually at the
+  // end.
   for (std::size_t i = size; i >= scan + 4; --i) {
     if (data[i - 2] == 0xFF && data[i - 1] == 0xD9) return false;
   }

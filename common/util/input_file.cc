@@ -17,7 +17,7 @@ void RequireRegularFile(const std::string& path) {
     throw InputError(path + ": cannot be read: " + std::strerror(errno));
   }
   if (S_ISDIR(status.st_mode)) {
-    throw InputError(path + ": is a folder, where a file is wanted");
+    throw InputError(path + ": is a folder, but a file is expected");
   }
   if (!S_ISREG(status.st_mode)) {
     throw InputError(path + ": is a pipe, device or socket; write it to a file first");

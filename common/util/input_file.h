@@ -6,10 +6,10 @@
 
 namespace airdos {
 
-/// To be called before a file is opened for reading: to open a pipe waits for its writer, a device
-/// may have no end, and what reads a folder fails with a text of its own. Throws InputError naming
-/// the path where there is no file (through links), where it is a folder, a pipe, a device or a
-/// socket, or where it must not be read.
+/// Call this before opening a file for reading: opening a pipe waits for its writer, a device may
+/// have no end, and reading a folder fails with an unrelated message. Follows links. Throws
+/// InputError naming the path if there is no file, if it is a folder, pipe, device or socket, or if
+/// it may not be read.
 void RequireRegularFile(const std::string& path);
 
 /// A whole regular file. Throws InputError naming the path where it cannot be read, or holds more

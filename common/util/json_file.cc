@@ -13,7 +13,7 @@ std::int64_t WholeNumber(const nlohmann::json& value, std::int64_t low, std::int
   if (number != std::floor(number) || number < static_cast<double>(low) ||
       number > static_cast<double>(high)) {
     const std::string what = value.is_number() ? value.dump() : value.type_name();
-    throw InputError("'" + what + "' is no whole number from " + std::to_string(low) + " to " +
+    throw InputError("'" + what + "' is not a whole number from " + std::to_string(low) + " to " +
                      std::to_string(high));
   }
   return value.is_number_integer() ? value.get<std::int64_t>() : static_cast<std::int64_t>(number);

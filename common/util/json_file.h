@@ -7,14 +7,14 @@
 
 namespace airdos {
 
-/// A whole number from `low` to `high`, also where it is written as 3.0. Throws InputError where it
-/// is another one or none: to convert a number that does not fit is undefined.
+/// An integer from `low` to `high`, even if written as 3.0. Throws InputError if it is out of range
+/// or not an integer: converting a number that does not fit is undefined behaviour.
 std::int64_t WholeNumber(const nlohmann::json& value, std::int64_t low, std::int64_t high);
 
-/// Indented JSON. Texts may come from anybody's files: what is no UTF-8 in them is replaced.
+/// Indented JSON. Texts may come from any file: bytes that are not valid UTF-8 are replaced.
 std::string JsonText(const nlohmann::json& json);
 
-/// Writes it to a file. Throws InputError where that cannot be written.
+/// Writes `json` to a file. Throws InputError if that fails.
 void WriteJson(const nlohmann::json& json, const std::string& path);
 
 }  // namespace airdos

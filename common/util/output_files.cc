@@ -25,9 +25,9 @@ bool IsSame(const struct stat& a, const struct stat& b) {
   return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
-/// Whether the file is one of those in the folder, also under another name (a link).
+/// Whether the file is in the folder, possibly under another name (a link).
 bool IsFileIn(const std::string& folder, const struct stat& file) {
-  constexpr int kMaxDepth = 3;  // of data sets; a link may lead anywhere
+  constexpr int kMaxDepth = 3;  // depth of a data set; a link may lead anywhere
   std::error_code error;
   const auto options = fs::directory_options::follow_directory_symlink |
                        fs::directory_options::skip_permission_denied;
@@ -40,7 +40,7 @@ bool IsFileIn(const std::string& folder, const struct stat& file) {
   return false;
 }
 
-/// Whether the path, which need not exist, is the folder or lies in it.
+/// Whether the path, which need not exist, is the folder or inside it.
 bool IsBelow(const std::string& path, const struct stat& folder) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(fs::absolute(path, error), error);
@@ -69,10 +69,10 @@ void CheckNewFile(const std::string& path) {
   if (folder.empty()) folder = ".";
   std::error_code error;
   if (!fs::exists(folder, error)) {
-    throw InputError(path + ": there is no folder " + folder.string() + "; make it first");
+    throw InputError(path + ": there is no folder " + folder.string() + "; create it first");
   }
   if (!fs::is_directory(folder, error)) {
-    throw InputError(path + ": cannot be written: " + folder.string() + " is no folder");
+    throw InputError(path + ": cannot be written: " + folder.string() + " is not a folder");
   }
   if (access(folder.c_str(), W_OK | X_OK) != 0) FailToWrite(path);
 }
@@ -102,15 +102,15 @@ void CheckNoInput(const std::string& path, const std::vector<std::string>& input
   const bool exists = stat(path.c_str(), &status) == 0;
   for (const std::string& input : inputs) {
     struct stat other = {};
-    if (input.empty() || stat(input.c_str(), &other) != 0) continue;  // its reader will say so
+    if (input.empty() || stat(input.c_str(), &other) != 0) continue;  // its reader will report that
     if (exists && IsSame(status, other)) {
       throw InputError(path + ": is an input" + (path == input ? "" : " (" + input + ")") +
-                       ", which is never written over; choose another name");
+                       ", which is never overwritten; choose another name");
     }
     if (!S_ISDIR(other.st_mode)) continue;
     if (IsBelow(path, other) || (exists && S_ISREG(status.st_mode) && IsFileIn(input, status))) {
-      throw InputError(path + ": lies in the input folder " + input +
-                       ", which nothing is written into; choose another place");
+      throw InputError(path + ": is in the input folder " + input +
+                       ", to which nothing is written; choose another place");
     }
   }
 }
@@ -123,7 +123,7 @@ void CheckOutputFile(const std::string& path, const OutputRules& rules) {
     if (errno != ENOENT) FailToWrite(path);
     CheckNewFile(path);
   } else if (S_ISDIR(status.st_mode)) {
-    throw InputError(path + ": is a folder, where a file is to be written");
+    throw InputError(path + ": is a folder, but a file is to be written");
   } else if (S_ISREG(status.st_mode) && !IsStandardStream(path)) {
     CheckOldFile(path, rules.force);
   }
@@ -134,7 +134,7 @@ void MarkWritten(const std::string& path) {
   if (!stamp || IsStandardStream(path)) return;
   const std::string mark = std::to_string(stamp->num_bytes) + " " +
                            std::to_string(stamp->mtime_ns) + " " + ProgramName();
-  setxattr(path.c_str(), kMark, mark.data(), mark.size(), 0);  // or not: see the header
+  setxattr(path.c_str(), kMark, mark.data(), mark.size(), 0);  // may fail: see the header
 }
 
 std::string WriterOf(const std::string& path) {
@@ -158,8 +158,8 @@ OutputFiles::OutputFiles(const std::vector<std::string>& paths, const OutputRule
     for (const Entry& other : entries_) {
       const bool is_same = fs::weakly_canonical(fs::absolute(other.path, error), error) == place ||
                            fs::equivalent(path, other.path, error);
-      if (is_same && (!fs::exists(path, error) || StampOf(path))) {  // two to /dev/null are fine
-        throw InputError(path + ": is to be written twice; give each output a name of its own");
+      if (is_same && (!fs::exists(path, error) || StampOf(path))) {  // twice /dev/null is fine
+        throw InputError(path + ": would be written twice; give each output its own name");
       }
     }
     entries_.push_back({path, StampOf(path)});

@@ -8,15 +8,16 @@
 
 namespace airdos {
 
-// Where a program may write. It never writes over one of its inputs, and replaces a file that it
-// did not write itself only if it is told to (--force). Folders of results: output_folder.h.
+// Where a program may write. It never overwrites one of its inputs, and replaces a file that it did
+// not write itself only when told to (--force). For folders of results see output_folder.h.
 
+/// What must not be overwritten.
 struct OutputRules {
-  std::vector<std::string> inputs;  ///< files, and folders with all that is in them
-  bool force = false;               ///< other people's files are replaced, inputs never
+  std::vector<std::string> inputs;  ///< files, and folders with all their contents
+  bool force = false;               ///< replaces files that are not ours, but never inputs
 };
 
-/// Size and time of the last change of a file: while they stay the same, so does the file.
+/// Size and modification time of a file: while they stay the same, the file counts as unchanged.
 struct FileStamp {
   std::int64_t num_bytes = 0;
   std::int64_t mtime_ns = 0;
@@ -26,32 +27,32 @@ struct FileStamp {
   bool operator!=(const FileStamp& other) const { return !(*this == other); }
 };
 
-/// Of a regular file; a link is followed only where asked for. Nothing where there is none.
+/// Stamp of a regular file; links are followed only if requested. Nothing if there is no such file.
 std::optional<FileStamp> StampOf(const std::string& path, bool follows_links = true);
 
-/// Throws InputError if `path` is one of the inputs (the same file, also through links), or lies in
-/// an input folder; `force` does not help. The path itself need not exist.
+/// Throws InputError if `path` is one of the inputs (the same file, even through links), or is in
+/// an input folder, even with `force`. The path itself need not exist.
 void CheckNoInput(const std::string& path, const std::vector<std::string>& inputs);
 
-/// Throws InputError, in one line, if the file must not or cannot be written: it is an input; it
-/// exists and this program did not write it (see MarkWritten()), unless forced; its folder is not
-/// there or cannot be written to. Devices and pipes, /dev/stdout too, are let through.
+/// Throws a one-line InputError if the file may not or cannot be written: it is an input; it exists
+/// and was not written by this program (see MarkWritten()), unless forced; or its folder does not
+/// exist or is not writable. Devices and pipes, such as /dev/stdout, are accepted.
 void CheckOutputFile(const std::string& path, const OutputRules& rules);
 
-/// Remembers that this program wrote the file, and when: in its extended attribute
-/// user.airdos.written. A file that is changed afterwards is somebody else's again. On a file
-/// system without such attributes nothing is remembered, so that replacing needs --force.
+/// Records that this program wrote the file, and when, in its extended attribute
+/// user.airdos.written. A file that is modified afterwards no longer counts as ours. On a file
+/// system without extended attributes nothing is recorded, so replacing the file needs --force.
 void MarkWritten(const std::string& path);
 
-/// The program that wrote the file as it is now; empty if that was none of ours or is not known.
+/// The program that wrote the file in its present state; empty if it is not one of ours or unknown.
 std::string WriterOf(const std::string& path);
 
-/// The files that one command writes: checked when this is made, marked when it goes, if they were
-/// written by then (also where the command failed half-way; not after a kill).
+/// The files that one command writes. They are checked on construction and, if written by then,
+/// marked on destruction (even if the command failed half-way, but not after a kill).
 class OutputFiles {
  public:
-  /// Empty paths, options that were not given, are left out. Throws InputError as
-  /// CheckOutputFile(), and where two are the same.
+  /// Empty paths, for options that were not given, are ignored. Throws InputError like
+  /// CheckOutputFile(), and if two paths are the same.
   OutputFiles(const std::vector<std::string>& paths, const OutputRules& rules);
   ~OutputFiles();
   OutputFiles(const OutputFiles&) = delete;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -24,12 +25,12 @@ constexpr char kHead[] =
     "them.\n# bytes, time (ns), group, name\n";
 constexpr char kProcess[] = "# process ";
 
-bool Exists(const std::string& path) {  // a link that leads nowhere, too
+bool Exists(const std::string& path) {  // including a dangling link
   std::error_code error;
   return fs::exists(fs::symlink_status(path, error));
 }
 
-/// Whether a name from a list leads to a file below its folder, whoever wrote the list.
+/// Whether a name from a list stays below its folder, whoever wrote the list.
 bool IsSafe(const std::string& name) {
   const fs::path path(name);
   if (name.empty() || path.is_absolute()) return false;
@@ -49,7 +50,7 @@ OutputFolder::List ReadList(const std::string& folder, std::string* process) {
     std::istringstream words(line);
     std::string bytes, time, group, name;
     if (line[0] == '#' || !(words >> bytes >> time >> group)) continue;
-    words.get();  // the blank before the name, which may hold some itself
+    words.get();  // the space before the name, which may itself contain spaces
     if (!std::getline(words, name) || !IsSafe(name)) continue;
     OutputFolder::Entry& entry = list[name];
     entry = {std::nullopt, group};
@@ -58,14 +59,14 @@ OutputFolder::List ReadList(const std::string& folder, std::string* process) {
   return list;
 }
 
-/// Whether the file is one that this entry tells of, and not changed since.
+/// Whether the file is the one in this entry and has not changed since.
 bool IsUnchanged(const OutputFolder::Entry& entry, const std::string& path) {
   const std::optional<FileStamp> now = StampOf(path, false);
   return now && (!entry.stamp || *entry.stamp == *now);
 }
 
-/// Whether one of our programs wrote the file: by a list, also one of the folder within
-/// that it lies in (an export into a session's folder), or by its mark.
+/// Whether one of our programs wrote the file: according to a list, possibly that of the subfolder
+/// that it is in (an export into a session's folder), or to its mark.
 bool IsOurs(const OutputFolder::List& list, const std::string& folder, const std::string& name) {
   const std::string path = folder + "/" + name;
   const auto entry = list.find(name);
@@ -90,7 +91,7 @@ std::string LineOf(const std::string& name, const OutputFolder::Entry& entry) {
   return line + " " + entry.group + " " + name + "\n";
 }
 
-/// Removes the folders above the file that are empty, or hold only a list of their own.
+/// Removes the folders above the file that are empty or hold only a list of their own.
 void RemoveEmptyFolders(const std::string& folder, const std::string& name) {
   for (fs::path below = fs::path(name).parent_path(); !below.empty(); below = below.parent_path()) {
     const fs::path path = fs::path(folder) / below;
@@ -109,20 +110,20 @@ void RemoveEmptyFolders(const std::string& folder, const std::string& name) {
 
 OutputFolder::OutputFolder(const std::string& path, const OutputRules& rules)
     : path_(path), rules_(rules) {
-  if (path.empty()) throw InputError("the name of a folder for results is empty");
-  // With all of its content it would be an input of its own.
+  if (path.empty()) throw InputError("the name of the results folder is empty");
+  // Otherwise the folder, with all its contents, would be an input of itself.
   CheckNoInput(path, rules.inputs);
   std::error_code error;
   is_new_ = fs::create_directories(path, error);
   if (!error && !fs::is_directory(path, error))
     error = std::make_error_code(std::errc::not_a_directory);
-  if (error) throw InputError(path + ": cannot be made: " + error.message());
+  if (error) throw InputError(path + ": cannot be created: " + error.message());
   try {
     Lock();
     std::string process;
     list_ = ReadList(path_, &process);
     const std::optional<FileStamp> stamp = StampOf(PathOf(kListName));
-    if (!stamp) throw InputError(PathOf(kListName) + ": is no file; remove it");
+    if (!stamp) throw InputError(PathOf(kListName) + ": is not a file; remove it");
     Append((stamp->num_bytes == 0 ? kHead : "") + std::string(kProcess) + std::to_string(getpid()) +
            "\n");
   } catch (...) {
@@ -137,15 +138,15 @@ void OutputFolder::Lock() {
   for (;;) {
     list_file_ = open(list.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (list_file_ < 0) throw InputError(path_ + ": cannot be written: " + std::strerror(errno));
-    // A file system that knows no locks is not to blame on the user.
+    // A file system without locks is not the user's fault.
     if (flock(list_file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       std::string process;
       ReadList(path_, &process);
       throw InputError(path_ + ": another run is writing here" +
                        (process.empty() ? "" : " (process " + process + ")") +
-                       "; wait for its end or choose another folder");
+                       "; wait until it ends or choose another folder");
     }
-    // Whoever held the lock may have removed the list when it went.
+    // The previous holder of the lock may have removed the list on leaving.
     struct stat opened = {};
     struct stat named = {};
     if (fstat(list_file_, &opened) == 0 && stat(list.c_str(), &named) == 0 &&
@@ -160,7 +161,7 @@ OutputFolder::~OutputFolder() {
   Finish();
   std::error_code error;
   if (list_.empty()) fs::remove(PathOf(kListName), error);
-  if (list_.empty() && is_new_) rmdir(path_.c_str());  // unless something is in it
+  if (list_.empty() && is_new_) rmdir(path_.c_str());  // fails if it is not empty
   close(list_file_);
 }
 
@@ -206,7 +207,7 @@ int OutputFolder::RemoveEarlier(const Selection& selection) {
     RemoveEmptyFolders(path_, name);
   }
   list_ = std::move(kept);
-  // A kill between these two leaves files that nobody knows any more, but none that is lost.
+  // A kill between these two leaves files that are on no list, but loses none.
   if (ftruncate(list_file_, 0) == 0) {
     std::string text = kHead + std::string(kProcess) + std::to_string(getpid()) + "\n";
     for (const auto& [name, entry] : list_) text += LineOf(name, entry);
@@ -218,14 +219,14 @@ int OutputFolder::RemoveEarlier(const Selection& selection) {
 std::string OutputFolder::Claim(const std::string& name, const std::string& group) {
   const std::string path = PathOf(name);
   if (!IsSafe(name) || name.find('\n') != std::string::npos) {
-    throw InputError(path + ": is no name for a result");
+    throw InputError(path + ": is not a valid name for a result");
   }
   CheckChange(name);
   std::error_code error;
   fs::create_directories(fs::path(path).parent_path(), error);
   if (error) {
     throw InputError(fs::path(path).parent_path().string() +
-                     ": cannot be made: " + error.message());
+                     ": cannot be created: " + error.message());
   }
   list_[name] = {std::nullopt, group};
   claimed_.insert(name);
@@ -248,7 +249,7 @@ void OutputFolder::Finish() {
   unfinished_.clear();
   try {
     if (!text.empty()) Append(text);
-  } catch (const InputError&) {  // they stay announced
+  } catch (const InputError&) {  // they stay listed as unfinished
   }
 }
 

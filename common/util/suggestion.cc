@@ -7,7 +7,7 @@
 namespace airdos {
 namespace {
 
-/// Without leading dashes, in small letters.
+/// Without leading dashes, in lower case.
 std::string Plain(const std::string& word) {
   const std::size_t start = std::min(word.find_first_not_of('-'), word.size());
   std::string plain = word.substr(start);
@@ -25,7 +25,7 @@ std::string LastPart(const std::string& key) { return key.substr(key.rfind('.') 
 
 constexpr int kNotNear = 1000;
 
-/// What a candidate costs as an explanation of a word; at most MaxCost() is near.
+/// Cost of explaining a word by a candidate; up to MaxCost() counts as similar.
 int Cost(const std::string& word, const std::string& candidate) {
   constexpr std::size_t kMinCommonStart = 3;
   const std::string a = Plain(word);
@@ -52,7 +52,7 @@ int MaxCost(const std::string& word) {
 int EditDistance(const std::string& first, const std::string& second) {
   const std::string a = Plain(first);
   const std::string b = Plain(second);
-  // distance[i][j]: of the first i letters of a and the first j of b.
+  // distance[i][j]: between the first i letters of a and the first j of b.
   std::vector<std::vector<int>> distance(a.size() + 1, std::vector<int>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {
     for (std::size_t j = 0; j <= b.size(); ++j) {
@@ -72,7 +72,7 @@ int EditDistance(const std::string& first, const std::string& second) {
 }
 
 std::string DidYouMean(const std::string& word, const std::vector<std::string>& candidates) {
-  constexpr std::size_t kMaxWord = 100;  // a longer one is no mistyped name
+  constexpr std::size_t kMaxWord = 100;  // a longer one is not a mistyped name
   if (Plain(word).empty() || word.size() > kMaxWord) return "";
   const std::string* best = nullptr;
   int best_cost = MaxCost(word) + 1;

@@ -6,13 +6,13 @@
 
 namespace airdos {
 
-/// How many letters must be put in, left out, replaced or exchanged with their neighbour to make
-/// one word of the other; capitals count as small letters, and _ as -.
+/// Number of insertions, deletions, replacements and swaps of adjacent letters that turn one word
+/// into the other. Ignores case, and treats _ as -.
 int EditDistance(const std::string& a, const std::string& b);
 
-/// "; did you mean 'x'?" with the candidate that a mistyped word most probably stands for: one that
-/// differs by few letters, or goes on where the word ends, or the other way round, or (for
-/// "section.key") has the same last part. Empty where none is near.
+/// "; did you mean 'x'?" with the candidate that a mistyped word most likely stands for: one that
+/// differs by a few letters, that extends the word or is extended by it, or (for "section.key")
+/// that has the same last part. Empty if no candidate is similar.
 std::string DidYouMean(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace airdos

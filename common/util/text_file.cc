@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMaxLineBytes = 20000;
 constexpr int kMaxLines = 1000000;
 
-/// Like std::getline(), but a line without an end is left where it is too long.
+/// Like std::getline(), but stops early in a line that is too long.
 bool ReadLine(std::istream* stream, std::string* line) {
   line->clear();
   std::streambuf* const buffer = stream->rdbuf();
@@ -28,23 +28,14 @@ bool ReadLine(std::istream* stream, std::string* line) {
   return !line->empty();
 }
 
-/// For a message of one line: without control characters, and not too long.
-std::string Shown(std::string word) {
-  constexpr std::size_t kMaxShown = 60;
-  if (word.size() > kMaxShown) word = word.substr(0, kMaxShown) + "...";
-  std::replace_if(
-      word.begin(), word.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  return word;
-}
-
-/// Windows' editors begin a file with a mark of its encoding (U+FEFF). That of UTF-8 is taken away.
+/// Windows editors start a file with a byte order mark (U+FEFF). That of UTF-8 is removed.
 void CheckEncoding(const std::string& path, std::string* first_line) {
   constexpr const char* kUtf8Mark = "\xEF\xBB\xBF";
   if (first_line->compare(0, 3, kUtf8Mark) == 0) first_line->erase(0, 3);
   const bool is_marked = first_line->compare(0, 2, "\xFF\xFE") == 0 ||  // little, big endian
                          first_line->compare(0, 2, "\xFE\xFF") == 0;
   const std::string start = first_line->substr(0, 64);
-  // Half of the bytes of figures in UTF-16 are zero.
+  // In UTF-16, every other byte of ASCII text is zero.
   const bool looks_like_it =
       start.size() >= 4 &&
       3 * std::count(start.begin(), start.end(), '\0') >= static_cast<std::ptrdiff_t>(start.size());
@@ -55,6 +46,17 @@ void CheckEncoding(const std::string& path, std::string* first_line) {
 }
 
 }  // namespace
+
+std::string Printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  return text;
+}
+
+std::string Shown(const std::string& word) {
+  constexpr std::size_t kMaxShown = 60;
+  return Printable(word.substr(0, kMaxShown)) + (word.size() > kMaxShown ? "..." : "");
+}
 
 std::vector<TextLine> ReadTextLines(const std::string& path, std::string* heading) {
   RequireRegularFile(path);
@@ -91,7 +93,7 @@ std::vector<double> ParseNumbers(const std::string& path, const TextLine& line, 
   for (std::size_t i = first; i < line.words.size(); ++i) {
     char* end = nullptr;
     const double number = std::strtod(line.words[i].c_str(), &end);
-    // Counted, because a word may hold a zero byte.
+    // Compared by length, since a word may contain a zero byte.
     const bool is_whole = end == line.words[i].c_str() + line.words[i].size();
     if (!is_whole || !std::isfinite(number)) {
       throw InputError(path + ":" + std::to_string(line.number) + ": '" + Shown(line.words[i]) +

@@ -1,16 +1,17 @@
 #!/bin/bash
-# Whether memory is bounded: plays a sequence again and again as one long session to the processes (lock-step) and prints how
-# much memory each has and how much disk the map takes, as the run gets longer (Markdown).
+# Tests whether memory is bounded: plays a sequence repeatedly to the processes as one long session (in lockstep) and prints how
+# much memory each of them uses and how much disk space the map takes as the run gets longer (Markdown).
 #
 # Usage: launch_scripts/benchmark/benchmark_memory.sh FOLDER|LOG [--loops N] [--warm-up N] [--run-dir FOLDER]
-#   FOLDER|LOG        what is played, as one session: image numbers and times go on, the scene jumps at each seam
+#   FOLDER|LOG        what to play, as one session: image numbers and times continue, the scene jumps at each seam
 #   --loops N         how often (default 400: 20,000 frames of the sample log)
-#   --warm-up N       frames from which on growth counts (default 2000)
-#   --run-dir FOLDER  where everything goes (default logs/runs/memory): memory.md, memory.tsv (a row every 500 frames: frame,
-#                     kB of memory (RSS) of each process, bytes of map.airdos) and what run_live.sh leaves
+#   --warm-up N       frame from which growth counts (default 2000)
+#   --run-dir FOLDER  folder for the results (default logs/runs/memory): memory.md, memory.tsv (a row every 500 frames: frame,
+#                     memory (RSS) of each process in kB, size of map.airdos in bytes) and the output of run_live.sh
 #   --help            this text
 #
-# Growth: the largest memory after the warm-up over the largest of the warm-up's second half. Exit 1 if one is above 10 %.
+# Growth: the maximum memory after the warm-up divided by the maximum in the second half of the warm-up. Exit code 1 if any is above
+# 10 %.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
@@ -22,13 +23,13 @@ readonly max_growth_percent=10
 
 loops=400 warm_up=2000 run_dir=$AIRDOS_RUNS/memory
 parse_options 'loops warm-up run-dir' "$@"
-((${#operands[@]} == 1)) || die_usage "one folder or log is needed (see --help)"
+((${#operands[@]} == 1)) || die_usage "one folder or log is required (see --help)"
 [[ -e ${operands[0]} ]] || die_usage "no folder '${operands[0]}'"
 need_number --loops "$loops"
 need_number --warm-up "$warm_up"
 need_program airdos-stereo-player
 
-# sample FRAME: a row of memory.tsv; nothing once a process has ended.
+# sample FRAME: appends a row to memory.tsv, unless a process has ended.
 sample() {
   local name pid row=$1
   for name in "${processes[@]}"; do
@@ -54,7 +55,7 @@ while kill -0 "$live_pid" 2> /dev/null; do
 done
 finish_jobs
 
-[[ -s $run_dir/memory.tsv ]] || die "less than 500 frames: nothing was measured (log: $run_dir/run_live.log)"
+[[ -s $run_dir/memory.tsv ]] || die "fewer than 500 frames: nothing was measured (log: $run_dir/run_live.log)"
 code=0
 awk -F'\t' -v warm_up="$warm_up" -v limit="$max_growth_percent" -v names="${processes[*]}" '
   {

@@ -1,28 +1,29 @@
 #!/bin/bash
-# How much luck a figure is: each sequence once as configured and five times with one setting changed, in each mode. Prints
-# a row a run, then the median and the worst ATE of each sequence and mode (Markdown).
+# How much of a figure is luck: runs each sequence once as configured and five times with one setting changed, in each mode. Prints
+# a row per run, then the median and the worst ATE of each sequence and mode (Markdown).
 #
 # Usage: launch_scripts/benchmark/benchmark_perturbed.sh FOLDER… [--modes "mask_only on"] [--jobs N] [--run-dir FOLDER] [--set P:S.K=V]…
 #   FOLDER…           sequences, each in a layout that airdos-replay knows
-#   --modes LIST      of off, mask_only, on (default: mask_only and on)
-#   --jobs N          runs at a time (default: as many as there are cores)
-#   --run-dir FOLDER  where everything goes (default logs/runs/perturbed): runs.jsonl and a folder a run
-#   --set P:S.K=V     of airdos-replay: another value in process P's configuration, in all runs (again for more)
+#   --modes LIST      out of off, mask_only, on (default: mask_only and on)
+#   --jobs N          number of parallel runs (default: the number of cores)
+#   --run-dir FOLDER  folder for the results (default logs/runs/perturbed): runs.jsonl and a folder per run
+#   --set P:S.K=V     passed to airdos-replay: overrides a value in process P's configuration (repeatable)
 #   --help            this text
 #
-# The perturbations (the frontend's settings; as configured: threshold 8, dilation 8, 300 features):
+# The perturbations (of the frontend's settings; as configured: threshold 8, dilation 8, 300 features):
 #   fast_7, fast_10          features.fast_threshold, grey levels: other corners
 #   dilation_6, dilation_10  masks.dilation_px: other features near people
-#   features_250             tracking.max_observations: fewer features a frame
-# ATE: root mean square after SE(3) alignment without scale, over all frames. Lost: frames without a pose, or whose step is
-# wrong by more than 0.10 m or 2 degrees.
+#   features_250             tracking.max_observations: fewer features per frame
+# ATE: RMS after SE(3) alignment without scale, over all frames. Lost: frames without a pose, or whose step is wrong by more than
+# 0.10 m or 2 degrees.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 # shellcheck source=launch_scripts/benchmark/benchmark_common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/benchmark_common.sh"
 
-readonly variants='plain fast_7 fast_10 dilation_6 dilation_10 features_250'
+# shellcheck disable=SC2034 # start_runs reads it
+readonly variants=(plain fast_7 fast_10 dilation_6 dilation_10 features_250)
 declare -A setting_of=(
   [fast_7]=features.fast_threshold=7
   [fast_10]=features.fast_threshold=10
@@ -39,20 +40,12 @@ need_modes "$modes"
 need_sequences "${folders[@]}"
 need_benchmark_programs
 
-# run_of FOLDER MODE VARIANT: the folder of that run.
-run_of() { echo "$run_dir/$(basename "$1")/$2/$3"; }
-
-# run_one FOLDER MODE VARIANT: leaves the row of runs.jsonl in the run's folder. A failing estimate may be too bad to tell
-# the axes of the ground truth: they come from the plain run with masks.
+# run_one FOLDER MODE VARIANT: writes the row of runs.jsonl to the run's folder.
 run_one() {
-  local folder=$1 mode=$2 variant=$3 name run reference axes=auto options=("${replay_options[@]}")
-  name=$(basename "$folder")
-  run=$(run_of "$folder" "$mode" "$variant")
-  reference=$(run_of "$folder" mask_only plain)
+  local folder=$1 mode=$2 variant=$3 name=${1##*/} run options=("${replay_options[@]}")
+  run=$(run_of "$@")
   [[ -z ${setting_of[$variant]:-} ]] || options+=(--set "frontend:${setting_of[$variant]}")
-  [[ $run == "$reference" ]] || axes=$(axes_of "$reference/evaluation.json")
-  replay_sequence "$name, $mode, $variant" "$folder" "$run" --people "$mode" "${options[@]}"
-  evaluate_run "$name, $mode, $variant" "$run" --gt-axes "$axes"
+  run_with_axes_of "$(run_of "$folder" mask_only plain)" "$name, $mode, $variant" "$folder" "$run" --people "$mode" "${options[@]}"
   jq -c --arg sequence "$name" --arg mode "$mode" --arg variant "$variant" '{
       sequence: $sequence, mode: $mode, variant: $variant, frames, frames_lost, poses_matched,
       ate_m: .ate_se3_m.rmse, rpe_rmse_m: .rpe_translation_per_frame_m.rmse
@@ -61,19 +54,8 @@ run_one() {
 
 mkdir -p "$run_dir"
 trap end_jobs EXIT
-for folder in "${folders[@]}"; do start_job "$jobs" run_one "$folder" mask_only plain; done
-finish_jobs
-rows=()
-for folder in "${folders[@]}"; do
-  for mode in $modes; do
-    for variant in $variants; do
-      rows+=("$(run_of "$folder" "$mode" "$variant")/row.json")
-      [[ $mode-$variant == mask_only-plain ]] || start_job "$jobs" run_one "$folder" "$mode" "$variant"
-    done
-  done
-done
-finish_jobs
-cat "${rows[@]}" > "$run_dir/runs.jsonl"
+start_runs finish_jobs 'mask_only plain' folders mode_list variants
+collect_rows folders mode_list variants
 
 echo '| sequence | people | run | frames posed | lost | ATE m | RPE m |'
 echo '|---|---|---|---|---|---|---|'

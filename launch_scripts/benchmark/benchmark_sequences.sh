@@ -1,15 +1,15 @@
 #!/bin/bash
-# Runs every sequence with people off, mask_only and on, and prints a table: frames posed, errors, ms a frame.
+# Runs every sequence with people off, mask_only and on, and prints a table: frames with a pose, errors, ms per frame.
 #
 # Usage: launch_scripts/benchmark/benchmark_sequences.sh FOLDER… [--modes "off mask_only on"] [--run-dir FOLDER] [--set P:S.K=V]…
 #   FOLDER…           sequences, each in TartanAir-Shibuya or KITTI odometry layout
-#   --modes LIST      of off, mask_only, on (default: all three)
-#   --run-dir FOLDER  where maps, trajectories and pictures go (default logs/runs/benchmark)
-#   --set P:S.K=V     of airdos-replay: another value in process P's configuration (again for more)
+#   --modes LIST      out of off, mask_only, on (default: all three)
+#   --run-dir FOLDER  folder for maps, trajectories and pictures (default logs/runs/benchmark)
+#   --set P:S.K=V     passed to airdos-replay: overrides a value in process P's configuration (repeatable)
 #   --help            this text
 #
-# ATE: root mean square after SE(3) alignment without scale, over all frames. Drift: of the end point, in % of the path.
-# ms: CPU time a frame, mean, of frontend / human tracker / optimizer, one thread each.
+# ATE: RMS after SE(3) alignment without scale, over all frames. Drift: of the end point, in % of the path length.
+# ms: mean CPU time per frame of frontend / human tracker / optimizer, one thread each.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
@@ -25,9 +25,8 @@ need_benchmark_programs
 
 # run_one FOLDER MODE: one row of the table.
 run_one() {
-  local folder=$1 mode=$2 name run evaluation timing
-  name=$(basename "$folder")
-  run=$run_dir/$name/$mode
+  local folder=$1 mode=$2 name=${1##*/} run evaluation timing
+  run=$(run_of "$@")
   replay_sequence "$name, $mode" "$folder" "$run" --people "$mode" --out "$run/output.lcm" "${replay_options[@]}"
   evaluate_run "$name, $mode" "$run"
   evaluation=$run/evaluation.json timing=$run/timing.json
@@ -42,6 +41,4 @@ run_one() {
 
 echo '| sequence | people | frames posed | ATE m | RPE m | RPE deg | drift % | ms |'
 echo '|---|---|---|---|---|---|---|---|'
-for folder in "${folders[@]}"; do
-  for mode in $modes; do run_one "$folder" "$mode"; done
-done
+for_each folders mode_list -- run_one

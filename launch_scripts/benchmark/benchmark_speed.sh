@@ -1,20 +1,20 @@
 #!/bin/bash
-# How fast the chain is on each sequence, in airdos-replay and live, and how its solver grows with people and window: prints
-# tables (Markdown), writes them as JSON and draws them.
+# How fast the chain is on each sequence, in airdos-replay and live, and how its solver scales with people and window: prints
+# tables (Markdown), writes them as JSON and plots them.
 #
 # Usage: launch_scripts/benchmark/benchmark_speed.sh FOLDER… [--people MODE] [--live yes|no] [--solver yes|no] [--run-dir FOLDER] [--set P:S.K=V]…
 #   FOLDER…           sequences, each in a layout that airdos-replay knows
-#   --people MODE     of airdos-replay: off, mask_only or on (default: as configured, as it always is live)
-#   --live yes|no     also run the four processes in lock-step, over LCM in a network of their own (default yes)
-#   --solver yes|no   also run airdos_solver_benchmark, if it is built (default yes)
-#   --run-dir FOLDER  where everything goes (default logs/runs/speed): speed.md, speed.json, speed.png, runs.jsonl, solver.json
-#                     and a folder a sequence
-#   --set P:S.K=V     of airdos-replay: another value in process P's configuration (again for more)
+#   --people MODE     passed to airdos-replay: off, mask_only or on (default: as configured, as in live runs)
+#   --live yes|no     also run the four processes in lockstep, over LCM in their own network (default yes)
+#   --solver yes|no   also run airdos_solver_benchmark, if it has been built (default yes)
+#   --run-dir FOLDER  folder for the results (default logs/runs/speed): speed.md, speed.json, speed.png, runs.jsonl, solver.json
+#                     and a folder per sequence
+#   --set P:S.K=V     passed to airdos-replay: overrides a value in process P's configuration (repeatable)
 #   --help            this text
 #
-# ms: CPU time a frame, in one thread. MB: the most resident memory of a process (live) or of all in one (replay, parallel).
-# Frames a second: wall time, input and output included. Messages: of frames, inputs and outputs. One run at a time, because
-# other work falsifies all but CPU times.
+# ms: CPU time per frame, in one thread. MB: peak resident memory of a process (live) or of all in one (replay, parallel). Frames per
+# second: wall time, including input and output. Messages: of frames, inputs and outputs. One run at a time, because other load
+# distorts everything but CPU times.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
@@ -43,7 +43,7 @@ run_replay() {
     die "$name: airdos-replay failed (log: $run/$threads.log)"
 }
 
-# run_live NAME FOLDER RUN: leaves live.json: frames a second and the most memory (kB) of each process.
+# run_live NAME FOLDER RUN: writes live.json: frames per second and peak memory (kB) of each process.
 run_live() {
   local name=$1 folder=$2 run=$3/live live_pid process pid peak published
   local -A peaks=()
@@ -62,18 +62,17 @@ run_live() {
   wait_for_jobs
   ((failed_jobs == 0)) || die "$name: run_live.sh failed (log: $run/run_live.log)"
   published=$(sed -n 's/.*published \([0-9]*\) frames in \([0-9.e+]*\) s.*/\1 \2/p' "$run/player.log")
-  [[ -n $published ]] || die "$name: the player did not end well (log: $run/player.log)"
+  [[ -n $published ]] || die "$name: the player failed (log: $run/player.log)"
   for process in "${!peaks[@]}"; do echo "$process ${peaks[$process]}"; done |
     jq -R -s --arg published "$published" '($published | split(" ") | map(tonumber)) as [$frames, $seconds]
       | {fps: ($frames / $seconds), peaks: ([split("\n")[] | select(. != "") | split(" ") | {(.[0]): (.[1] | tonumber / 1024)}] | add)}' \
       > "$3/live.json"
 }
 
-# run_one FOLDER: leaves the row of runs.jsonl in the run's folder.
+# run_one FOLDER: writes the row of runs.jsonl to the run's folder.
 run_one() {
-  local folder=$1 name run
-  name=$(basename "$folder")
-  run=$run_dir/$name
+  local folder=$1 name=${1##*/} run
+  run=$(run_of "$folder")
   mkdir -p "$run"
   run_replay "$name" "$folder" "$run" 1
   run_replay "$name" "$folder" "$run" auto
@@ -92,12 +91,8 @@ run_one() {
 
 mkdir -p "$run_dir"
 trap end_jobs EXIT
-rows=()
-for folder in "${folders[@]}"; do
-  run_one "$folder"
-  rows+=("$run_dir/$(basename "$folder")/row.json")
-done
-cat "${rows[@]}" > "$run_dir/runs.jsonl"
+for_each folders -- run_one
+collect_rows folders
 
 solver_options=()
 if [[ $solver == yes && -x $AIRDOS_BIN/airdos_solver_benchmark ]]; then
@@ -105,7 +100,7 @@ if [[ $solver == yes && -x $AIRDOS_BIN/airdos_solver_benchmark ]]; then
     > "$run_dir/solver.log" 2>&1 || die "airdos_solver_benchmark failed (log: $run_dir/solver.log)"
   solver_options=(--solver "$run_dir/solver.json")
 elif [[ $solver == yes ]]; then
-  say "airdos_solver_benchmark is not built (it wants libbenchmark-dev): no figures of the solver" >&2
+  say "airdos_solver_benchmark is not built (it needs libbenchmark-dev): no figures for the solver" >&2
 fi
 "$AIRDOS_BIN/airdos-evaluate" speed --runs "$run_dir/runs.jsonl" "${solver_options[@]}" --json "$run_dir/speed.json" \
   --plot "$run_dir/speed.png" > "$run_dir/speed.md" || die "airdos-evaluate speed failed"

@@ -5,32 +5,33 @@
 
 #include "common/check/check_findings.h"
 #include "common/check/stereo_matches.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
 
-// To measure a pair takes about half as long as to track a frame.
+// Measuring a pair takes about half as long as tracking a frame.
 constexpr int kMaxCorners = 300;
-constexpr int kFirstMeasured = 3;  // pairs of the first ten, if they have corners
+constexpr int kFirstMeasured = 3;  // of the first ten pairs, if they have corners
 constexpr int kMeasureEvery = 100;
 
-constexpr double kNotRectified_px = 1.5;  // the front end searches a corner so near to its row
+constexpr double kNotRectified_px = 1.5;  // the frontend's search range for a corner around its row
 constexpr double kBadlyRectified_px = 0.6;
-constexpr double kMinExchanged = 0.7;  // share of the disparities that are negative
+constexpr double kMinExchanged = 0.7;  // share of negative disparities
 
 constexpr double kMaxCoverage = 0.9;
 constexpr int kMinJoints = 50;
-constexpr double kMinMarked = 0.1;  // share of the joints that lie on masks
+constexpr double kMinMarked = 0.1;  // share of joints inside masks
 constexpr double kMinJointConfidence = 0.2;
 
-// Intervals that cameras have, and those that most have.
+// Periods that cameras can have, and those that most of them have.
 constexpr double kMinPeriod_s = 0.002;
 constexpr double kMaxPeriod_s = 2;
 constexpr double kMinUsualPeriod_s = 0.005;
 constexpr double kMaxUsualPeriod_s = 1;
 
-/// Two of the three pairs measured last must agree: one may have shown nothing but waves, or been
-/// taken before the camera moved.
+/// Two of the last three measured pairs must agree: a single one may show nothing but water, or
+/// date from before the camera moved.
 double MiddleOfLastThree(const std::vector<double>& values) {
   return Quantile({values.end() - kFirstMeasured, values.end()}, 0.5);
 }
@@ -65,7 +66,7 @@ void InputWatch::JudgeTimes() {
       break;
     }
   }
-  warnings_.push_back("the left images' utime says that they are " + Brief(period_s) +
+  warnings_.push_back("according to utime, the left images are " + Brief(period_s) +
                       " s apart (median)" + unit + must);
 }
 
@@ -91,13 +92,13 @@ void InputWatch::JudgePairs() {
     is_exchange_said_ = true;
     warnings_.push_back("left and right images are exchanged: " + Percent(share_negative) +
                         " of the matches have a negative disparity; no static feature will be "
-                        "found until they change places");
+                        "found until they are swapped");
   }
   if (are_rows_said_ || error_px <= kBadlyRectified_px) return;
   are_rows_said_ = true;
   const std::string how = error_px > kNotRectified_px ? "are not rectified" : "are badly rectified";
   warnings_.push_back("the images " + how + ": rows of matches differ by " + Brief(error_px) +
-                      " px (median); airdos-check LOG|FOLDER says more");
+                      " px (median); airdos-check LOG|FOLDER reports more");
 }
 
 void InputWatch::AddMask(const cv::Mat& mask, const std::vector<BodyKeypoints>& people) {
@@ -125,12 +126,12 @@ void InputWatch::JudgeMasks() {
   std::string text;
   if (coverage > kMaxCoverage) {
     text = "the person masks cover " + Percent(coverage) +
-           " of the image (median), where static features may not come from; are they inverted, or "
+           " of the image (median), which excludes static features there; are they inverted, or "
            "does each class have a number?";
   } else if (misses_people) {
     text = "the person masks do not mark people: " + std::to_string(num_marked) + " of " +
            std::to_string(num_joints) +
-           " keypoints lie on them; are they inverted, empty or of another camera?";
+           " keypoints are on them; are they inverted, empty or from another camera?";
   }
   if (text.empty()) return;
   are_masks_said_ = true;

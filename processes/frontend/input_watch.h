@@ -12,20 +12,19 @@
 
 namespace airdos {
 
-/// Watches, while a session runs, what airdos-check looks at beforehand: whether images are stereo
-/// pairs of rectified cameras, times are us, and masks mark people. It counts frames and knows no
-/// clock; each thing is said once. Cheap: all but a few frames are only counted.
+/// Watches during a session what airdos-check examines beforehand: whether the images are rectified
+/// stereo pairs, times are in us, and masks mark people. Counts frames and uses no clock; reports
+/// each problem once. Cheap: apart from a few frames, it only counts.
 class InputWatch {
  public:
-  /// A frame that has its left image, taken at `utime`.
+  /// Adds a frame that has its left image, taken at `utime`.
   void AddTime(std::int64_t utime);
-  /// Both images, CV_8UC1 of one size.
+  /// Adds both images, CV_8UC1 and of equal size.
   void AddPair(const cv::Mat& left, const cv::Mat& right);
-  /// Mask of the left image as it came (not 0 = a person), and the people in it where they are
-  /// known.
+  /// Adds the mask of a left image as received (non-zero = person), and the people in it, if known.
   void AddMask(const cv::Mat& mask, const std::vector<BodyKeypoints>& people);
 
-  /// What is to be said since the last call.
+  /// Warnings since the last call.
   std::vector<std::string> TakeWarnings();
 
  private:
@@ -37,18 +36,18 @@ class InputWatch {
 
   LookSchedule time_schedule_;
   std::optional<std::int64_t> last_utime_;
-  std::vector<double> steps_us_;  // of the first images
+  std::vector<double> steps_us_;  // between the first images
   bool are_times_judged_ = false;
 
   int num_pairs_ = 0;
   int num_measured_ = 0;
-  std::vector<double> row_errors_px_;    // of each pair that was measured
-  std::vector<double> negative_shares_;  // of its disparities
+  std::vector<double> row_errors_px_;    // one per measured pair
+  std::vector<double> negative_shares_;  // share of negative disparities, one per measured pair
   bool are_rows_said_ = false;
   bool is_exchange_said_ = false;
 
   LookSchedule mask_schedule_;
-  std::vector<double> coverages_;  // since the last look
+  std::vector<double> coverages_;  // since the last judgement
   int num_joints_ = 0;
   int num_marked_ = 0;
   bool are_masks_said_ = false;

@@ -4,7 +4,7 @@
 int main(int argc, char** argv) {
   airdos::ProcessInfo info;
   info.program = "airdos-frontend";
-  info.config_name = "frontend";
+  info.options = airdos::PagesOf<airdos::FrontendOptions>();
   info.description = "Tracks static landmarks in stereo images, without those on people";
   info.make_node = airdos::MakeFrontendNode;
   info.publishes_frame_done = false;

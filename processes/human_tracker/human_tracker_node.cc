@@ -6,7 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "processes/human_tracker/human_tracker_messages.h"
 #include "processes/node/message/channels.h"
+#include "processes/node/message/conversions.h"
+#include "processes/node/message/header.h"
 #include "processes/node/message/image_codec.h"
 #include "processes/node/message/keypoint_messages.h"
 
@@ -15,34 +18,6 @@ namespace {
 
 std::vector<BodyKeypoints> PeopleOf(const std::optional<person_keypoints_t>& message) {
   return message ? ToPeople(*message) : std::vector<BodyKeypoints>();
-}
-
-human_observation_t ToMessage(const TrackedHuman& human) {
-  human_observation_t message{};
-  message.track_id = human.id.value;
-  for (std::size_t joint = 0; joint < human.joints.size(); ++joint) {
-    const std::optional<TriangulatedJoint>& seen = human.joints[joint];
-    if (!seen) continue;
-    const auto as_float = [](double value) { return static_cast<float>(value); };
-    message.joint_id.push_back(static_cast<int8_t>(joint));
-    message.u_left_px.push_back(as_float(seen->u_left_px));
-    message.v_left_px.push_back(as_float(seen->v_px));
-    message.u_right_px.push_back(as_float(seen->u_right_px));
-    message.v_right_px.push_back(as_float(seen->v_px));
-    message.sigma_px.push_back(as_float(seen->sigma_px));
-    message.x_C_m.push_back(as_float(seen->p_C.x()));
-    message.y_C_m.push_back(as_float(seen->p_C.y()));
-    message.z_C_m.push_back(as_float(seen->p_C.z()));
-    const Eigen::Matrix3d& c = seen->covariance_C;
-    message.covariance_C.emplace_back();
-    for (int row = 0; row < 3; ++row) {
-      for (int column = row; column < 3; ++column) {
-        message.covariance_C.back().push_back(as_float(c(row, column)));
-      }
-    }
-  }
-  message.num_joints = static_cast<int32_t>(message.joint_id.size());
-  return message;
 }
 
 }  // namespace
@@ -61,17 +36,9 @@ HumanTrackerNode::HumanTrackerNode(const HumanTrackerOptions& options)
 
 void HumanTrackerNode::StartSession(const Header& header) {
   watches_ = Watches();
-  constexpr std::int64_t kMostPerFrame = 1000;  // Validate() lets 200 people an image pass
+  constexpr std::int64_t kMostPerFrame = 1000;  // Validate() accepts up to 200 people per image
   tracker_ = std::make_unique<HumanTracker>(options_,
                                             HumanId{FirstRunningNumber(header.seq, kMostPerFrame)});
-}
-
-bool HumanTrackerNode::Fits(const std::optional<cv::Mat>& image, const char* channel,
-                            const std::string& reason) {
-  if (image && image->size() == cv::Size(camera().width, camera().height)) return true;
-  ++counters(channel).num_rejected;
-  counters(channel).last_reject = image ? "its size is not that of the calibration" : reason;
-  return false;
 }
 
 void HumanTrackerNode::WatchKeypoints(const HumanTrackerInputs& inputs, const PeopleFrame& frame) {
@@ -112,17 +79,11 @@ void HumanTrackerNode::ProcessFrame(const Header& header, HumanTrackerInputs inp
 
   WatchKeypoints(inputs, frame);
   const TrackedFrame tracked = tracker_->Process(camera(), frame);
+  Publish(channel::kHumanObservations, ToHumanObservations(header, frame, tracked));
+}
 
-  human_observations_t message{};
-  message.utime = header.utime;
-  message.seq = header.seq;
-  message.session = header.session;
-  message.num_detected_left = static_cast<int32_t>(frame.left.size());
-  message.num_detected_right = static_cast<int32_t>(frame.right.size());
-  message.num_rejected = static_cast<int32_t>(tracked.num_rejected);
-  for (const TrackedHuman& human : tracked.humans) message.humans.push_back(ToMessage(human));
-  message.num_humans = static_cast<int32_t>(message.humans.size());
-  Publish(channel::kHumanObservations, message);
+std::unique_ptr<Node> MakeHumanTrackerNode(ConfigReader* config) {
+  return std::make_unique<HumanTrackerNode>(ReadHumanTrackerOptions(config));
 }
 
 }  // namespace airdos

@@ -9,12 +9,14 @@
 #include "airdos/person_keypoints_t.hpp"
 #include "common/config/config_reader.h"
 #include "common/human/human_tracker.h"
+#include "processes/human_tracker/human_tracker_options.h"
 #include "processes/human_tracker/people_watch.h"
 #include "processes/node/frame_node.h"
 #include "processes/node/partner_watch.h"
 
 namespace airdos {
 
+/// The messages of one frame.
 struct HumanTrackerInputs {
   std::optional<image_t> left_image;
   std::optional<image_t> right_image;
@@ -23,9 +25,9 @@ struct HumanTrackerInputs {
 };
 
 /// CAMERA_LEFT, CAMERA_RIGHT, PERSON_KEYPOINTS_LEFT, PERSON_KEYPOINTS_RIGHT -> HUMAN_OBSERVATIONS:
-/// one message a frame, empty if nobody was found. An image that is missing, does not decode or has
-/// another size than the calibration says is done without; so are keypoints. It watches the
-/// keypoints and warns of what is doubtful.
+/// one message per frame, empty if nobody was found. Works without an image that is missing, cannot
+/// be decoded or differs in size from the calibration, and without missing keypoints. Watches the
+/// keypoints and warns of anything doubtful.
 class HumanTrackerNode : public FrameNode<HumanTrackerInputs> {
  public:
   explicit HumanTrackerNode(const HumanTrackerOptions& options);
@@ -35,23 +37,19 @@ class HumanTrackerNode : public FrameNode<HumanTrackerInputs> {
   void ProcessFrame(const Header& header, HumanTrackerInputs inputs) override;
 
  private:
-  /// What is watched of one session.
+  /// What is watched during one session.
   struct Watches {
     PartnerWatch left{channel::kPersonKeypointsLeft, "keypoints of the left image", true};
     PartnerWatch right{channel::kPersonKeypointsRight, "keypoints of the right image", true};
     PeopleWatch people;
   };
   void WatchKeypoints(const HumanTrackerInputs& inputs, const PeopleFrame& frame);
-  /// Whether the image has the size that the calibration says; counts a reject otherwise.
-  bool Fits(const std::optional<cv::Mat>& image, const char* channel, const std::string& reason);
 
   HumanTrackerOptions options_;
   std::unique_ptr<HumanTracker> tracker_;
   Watches watches_;
 };
 
-/// Reads the options of launch_scripts/config/human_tracker.yaml; Finish() is left to the caller.
-HumanTrackerOptions ReadHumanTrackerOptions(ConfigReader* config);
 std::unique_ptr<Node> MakeHumanTrackerNode(ConfigReader* config);
 
 }  // namespace airdos

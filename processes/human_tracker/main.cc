@@ -4,7 +4,7 @@
 int main(int argc, char** argv) {
   airdos::ProcessInfo info;
   info.program = "airdos-human-tracker";
-  info.config_name = "human_tracker";
+  info.options = airdos::PagesOf<airdos::HumanTrackerOptions>();
   info.description = "Pairs, triangulates and tracks the people in stereo images";
   info.make_node = airdos::MakeHumanTrackerNode;
   info.publishes_frame_done = false;

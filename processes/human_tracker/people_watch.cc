@@ -8,8 +8,8 @@ namespace airdos {
 namespace {
 
 constexpr double kMinConfidence = 0.2;
-constexpr int kMinJoints = 5;       // of a person in both images
-constexpr double kMaxError_px = 8;  // of joints of the same person, apart from the disparity
+constexpr int kMinJoints = 5;       // of a person, in both images
+constexpr double kMaxError_px = 8;  // between the same joints, after a shift along the row
 constexpr double kNoSign_px = 0.3;
 constexpr int kMinPeople = 20;
 constexpr double kMinShare = 0.7;
@@ -19,8 +19,7 @@ struct Likeness {
   double disparity_px = 0;
 };
 
-/// How well two detections fit over one another, moved along the row. Nothing where they share too
-/// few joints.
+/// How well two detections match after a shift along the row. Nothing if they share too few joints.
 std::optional<Likeness> Compare(const BodyKeypoints& left, const BodyKeypoints& right) {
   double sum_px = 0;
   double num = 0;

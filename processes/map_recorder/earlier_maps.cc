@@ -1,6 +1,5 @@
 #include "processes/map_recorder/earlier_maps.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -27,14 +26,14 @@ std::optional<UnfinishedMap> FindUnfinishedMap(const std::string& directory, con
     if (map.is_closed || map.session != header.session || !is_earlier) return std::nullopt;
     found.num_bytes = summary.num_bytes_used;
     found.num_live = CountLive(map);
-  } catch (const InputError&) {  // none, or none that can be read
+  } catch (const InputError&) {  // missing or unreadable
     return std::nullopt;
   }
   try {
     MapFileSummary summary;
     FourDMap notes = ReadFourDMap(directory + "/" + kNotesName, &summary);
     if (notes.session == header.session) found.notes = std::move(notes);
-  } catch (const InputError&) {  // then they are lost
+  } catch (const InputError&) {  // then the notes are lost
   }
   return found;
 }
@@ -58,32 +57,28 @@ std::vector<std::string> NamesToBeWritten(const std::string& directory) {
   return names;
 }
 
-void Say(const std::string& line) {
-  if (!line.empty()) std::fprintf(stderr, "map_recorder: %s\n", line.c_str());
-}
-
 bool IsUnfinished(const std::string& path) {
   if (!fs::exists(path)) return false;
   try {
     MapFileSummary summary;
     return !ReadFourDMap(path, &summary).is_closed;
-  } catch (const InputError&) {  // no map at all: it may be worth something to somebody
+  } catch (const InputError&) {  // not a map, so it may matter to somebody
     return true;
   }
 }
 
-void SayWhatIsReplaced(const std::string& path) {
+void SayWhatIsReplaced(const std::string& path, const SayLine& say) {
   if (!fs::exists(path)) return;
   try {
     MapFileSummary summary;
     const FourDMap map = ReadFourDMap(path, &summary);
-    Say(path + ": replaces the map of session " + std::to_string(map.session) + ", " +
+    say(path + ": replaces the map of session " + std::to_string(map.session) + ", " +
         std::to_string(map.frames.size()) + " frames");
-  } catch (const InputError&) {  // no map: it is named if it is in the way
+  } catch (const InputError&) {  // not a map: reported elsewhere if it is in the way
   }
 }
 
-void KeepMap(const std::string& path) {
+void KeepMap(const std::string& path, const SayLine& say) {
   if (!fs::exists(path)) return;
   const std::string ending = IsUnfinished(path) ? ".unfinished_" : ".closed_";
   int number = 1;
@@ -91,16 +86,16 @@ void KeepMap(const std::string& path) {
   std::error_code error;
   fs::rename(path, path + ending + std::to_string(number), error);
   if (error) throw InputError(path + ": cannot be renamed: " + error.message());
-  Say(path + ": is kept as " + path + ending + std::to_string(number) + ": its run was cut short");
+  say(path + ": is kept as " + path + ending + std::to_string(number) + ": its run was cut short");
 }
 
-void KeepMapsOfACutRun(const std::string& directory) {
-  int num_sessions = 0;  // of that run, as far as it came
+void KeepMapsOfACutRun(const std::string& directory, const SayLine& say) {
+  int num_sessions = 0;  // of that run, as far as it got
   for (int number = 1; fs::exists(SessionDirectory(directory, number)); ++number) {
     if (IsUnfinished(SessionDirectory(directory, number) + "/" + kMapName)) num_sessions = number;
   }
   for (int number = 1; number <= num_sessions; ++number) {
-    KeepMap(SessionDirectory(directory, number) + "/" + kMapName);
+    KeepMap(SessionDirectory(directory, number) + "/" + kMapName, say);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,45 +13,46 @@
 
 namespace airdos {
 
-// What the map recorder finds in its folder: maps that are gone on with, kept or replaced.
+// Maps that the recorder finds in its folder: whether they are continued, kept or replaced.
 
 inline constexpr char kMapName[] = "map.airdos";
 inline constexpr char kNotesName[] = "map.airdos.open";
 
-/// Of a session's files in the folder, from 1 on: "", "session_2/", ...
+/// Prefix of a session's files in the folder, counting from 1: "", "session_2/", ...
 std::string SessionPrefix(int number);
 std::string SessionDirectory(const std::string& directory, int number);
 
-/// Of all sessions that have a folder, the names that a run may write.
+/// The names that a run may write, for every session with a folder.
 std::vector<std::string> NamesToBeWritten(const std::string& directory);
 
-/// Frames that have a live pose.
+/// Number of frames with a live pose.
 std::size_t CountLive(const FourDMap& map);
 
 /// A map that was not closed.
 struct UnfinishedMap {
   std::int64_t num_bytes = 0;
   std::size_t num_live = 0;
-  FourDMap notes;  ///< what lay beside it
+  FourDMap notes;  ///< what was noted beside it
 };
-/// That of the header's session which ends before its image, if one lies in the directory.
+/// The unfinished map in the directory that belongs to the header's session and ends before its
+/// image, if there is one.
 std::optional<UnfinishedMap> FindUnfinishedMap(const std::string& directory, const Header& header);
 
-/// Whether there is a file that is no closed map.
+/// Whether there is a file that is not a closed map.
 bool IsUnfinished(const std::string& path);
 
-/// Gives the map another name, if there is one. Throws InputError.
-void KeepMap(const std::string& path);
+/// Takes a line for the user.
+using SayLine = std::function<void(const std::string&)>;
 
-/// A run that was cut short must not be lost to the next one in the same place: its maps, the
-/// closed ones of its earlier sessions, too, get other names.
-void KeepMapsOfACutRun(const std::string& directory);
+/// Renames the map, if there is one, and reports it. Throws InputError.
+void KeepMap(const std::string& path, const SayLine& say);
 
-/// A line of the recorder on stderr; an empty one is left out.
-void Say(const std::string& line);
+/// An interrupted run must not be lost to the next one in the same folder: renames its maps,
+/// including the closed ones of its earlier sessions.
+void KeepMapsOfACutRun(const std::string& directory, const SayLine& say);
 
-/// Says which map, if one lies there, is replaced.
-void SayWhatIsReplaced(const std::string& path);
+/// Reports which map, if there is one, is being replaced.
+void SayWhatIsReplaced(const std::string& path, const SayLine& say);
 
 }  // namespace airdos
 

@@ -2,6 +2,7 @@
 #define AIRDOS_PROCESSES_MAP_RECORDER_MAP_RECORDER_NODE_H_
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -15,16 +16,11 @@
 #include "common/config/config_reader.h"
 #include "common/map/four_d_map.h"
 #include "common/util/output_folder.h"
+#include "processes/map_recorder/map_recorder_options.h"
+#include "processes/map_recorder/session_files.h"
 #include "processes/node/frame_node.h"
 
 namespace airdos {
-
-struct MapRecorderOptions {
-  std::string directory;      ///< made if it is not there; must be named
-  int chunk_frames = 10;      ///< frames a chunk; a kill loses at most one chunk
-  bool export_at_end = true;  ///< also write the exports of common/map/map_export.h
-  OutputRules rules;          ///< what may be replaced; not in the configuration
-};
 
 /// STATE_ESTIMATE and MAP_UPDATE of one frame.
 struct MapRecorderInputs {
@@ -32,63 +28,67 @@ struct MapRecorderInputs {
   std::vector<map_update_t> updates;
 };
 
-/// Writes what the optimizer says into a 4-D map, `<directory>/map.airdos`, chunk by chunk, and
-/// makes the exports from that file at the end. What the file holds depends on what each channel
-/// carried only, not on how they interleaved: frames are joined by number, and calibration and
-/// ground truth, which nothing waits for, are written late: the calibration at the end, ground
-/// truth once kGroundTruthLag newer frames are done, and what is left, or comes later, at the end.
-/// It publishes nothing.
+/// Writes the optimizer's output to a 4-D map, `<directory>/map.airdos`, chunk by chunk, and
+/// creates the exports from that file at the end. The content of the file depends only on what each
+/// channel carried, not on how the channels interleaved: frames are joined by number, and
+/// calibration and ground truth, which nothing waits for, are written late. The calibration is
+/// written at the end; ground truth once kGroundTruthLag newer frames are done, and the rest of it,
+/// or what comes later, at the end. Publishes nothing.
 ///
-/// A second session goes to `<directory>/session_2`, and so on. A map that was not closed (a kill)
-/// is gone on with if what comes is of its session and later than all of it: what is lost are the
-/// live poses of the chunk that was open and of the frames until the restart; refined poses come
-/// again as long as the optimizer has them in its window. Else it is kept under another name
-/// (map.airdos.unfinished_1), and so are the maps of that run's earlier sessions
-/// (map.airdos.closed_1). The maps of a run that came to its end are replaced, and everything else
-/// that it left in the folder goes when the first frame comes; both are said on stderr. What was
-/// not written by a recorder, an export or a replay is never touched (see OutputFolder): where a
-/// file would get into its way, this is said before the first frame.
+/// A second session goes to `<directory>/session_2`, and so on. If a map was not closed (after a
+/// kill), recording continues in it, provided that the new frames belong to its session and are
+/// later than all of its frames. What is lost then are the live poses of the chunk that was open
+/// and of the frames until the restart; refined poses are reported again as long as the optimizer
+/// has them in its window. Otherwise the map is kept under another name (map.airdos.unfinished_1),
+/// and so are the maps of that run's earlier sessions (map.airdos.closed_1). The maps of a
+/// completed run are replaced, and everything else that it left in the folder is removed when the
+/// first frame arrives; both are reported. Files that were not written by a recorder, an
+/// export or a replay are never touched (see OutputFolder); if one is in the way, this is reported
+/// before the first frame.
 ///
-/// At its end each map is read again and held against what was recorded.
+/// At the end each map is read back and compared with what was recorded.
 ///
-/// Until a map is closed ground truth and calibration lie beside it in `map.airdos.open`, so that a
-/// kill loses at most kGroundTruthPerNote poses of them.
+/// Until a map is closed, ground truth and calibration are kept beside it in `map.airdos.open`, so
+/// a kill loses at most kGroundTruthPerNote poses of the ground truth.
 ///
-/// Memory: the open chunk and the ground truth that is not written yet (at most kMaxGroundTruth
-/// poses).
+/// Memory: the open chunk, and the ground truth that has not been written yet (at most
+/// kMaxGroundTruth poses).
 class MapRecorderNode : public FrameNode<MapRecorderInputs> {
  public:
   static constexpr std::size_t kMaxGroundTruth = 1000000;
   static constexpr std::size_t kGroundTruthPerNote = 10;
   static constexpr std::int64_t kGroundTruthLag = 1000;
-  /// Each session has a folder: in one more nothing is recorded.
-  static constexpr int kMaxSessions = 1000;
-  /// Calibrations and ground truth of so many sessions wait for their first frame.
+  static constexpr int kMaxSessions = SessionFiles::kMaxSessions;
+  /// Limit of sessions whose calibrations and ground truth are kept while they wait for their first
+  /// frame.
   static constexpr std::size_t kMaxSessionsAhead = 100;
 
-  /// Locks the folder until this goes. Throws InputError where it was not named, cannot be made or
-  /// written to, another run is writing there, or files of somebody else are in the way.
+  /// Locks the folder for the lifetime of this object. Throws InputError if no folder was named, it
+  /// cannot be created or written to, another run is writing to it, or somebody else's files are in
+  /// the way.
   explicit MapRecorderNode(const MapRecorderOptions& options);
-  /// Closes the map if Finish() was not called; a failure is then said on stderr.
+  /// Closes the map if Finish() was not called; a failure is then reported.
   ~MapRecorderNode() override;
 
-  /// Writes the last chunks and the exports. Nothing where no frame came. Throws InputError naming
-  /// the file that cannot be written, or could not be earlier, or does not hold what was recorded.
+  /// Writes the last chunks and the exports. Does nothing if no frame arrived. Throws InputError
+  /// naming the file that cannot be written, or could not be written earlier, or does not contain
+  /// what was recorded.
   void Finish() override;
 
-  /// Of the session in work; empty before the first frame.
-  const std::string& session_directory() const { return session_directory_; }
+  /// Folder of the current session; empty before the first frame.
+  const std::string& session_directory() const { return files_.session_directory(); }
 
-  /// For what else of this run is to lie in the folder.
-  OutputFolder* results() { return &results_; }
+  /// For other files of this run that belong into the folder.
+  OutputFolder* results() { return files_.results(); }
 
  protected:
   void StartSession(const Header& header) override;
-  /// Throws InputError once where the disk does not take the chunk or has hardly any room left;
-  /// nothing is recorded from then on, what was is kept.
+  /// Throws InputError once if the disk does not accept the chunk or is nearly full; after that
+  /// nothing more is recorded, but what was recorded is kept.
   void ProcessFrame(const Header& header, MapRecorderInputs inputs) override;
 
  private:
+  /// A pose of the ground truth.
   struct GroundTruth {
     std::int8_t axes = 0;
     std::int64_t utime = 0;
@@ -97,50 +97,35 @@ class MapRecorderNode : public FrameNode<MapRecorderInputs> {
 
   std::string AddCalibration(const stereo_calibration_t& message);
   std::string AddGroundTruth(const pose_t& message);
-  /// Goes on with the map of a recorder that was killed; false if there is none.
-  bool Resume(const Header& header);
-  /// Writes new ground truth of the session in work beside the map.
+  /// Takes the ground truth that lay beside the map of a recorder that was killed.
+  void TakeNotes(const FourDMap& notes);
+  /// Camera of the current session, if known.
+  std::optional<StereoCamera> Camera() const;
+  /// Writes new ground truth of the current session beside the map.
   void NoteGroundTruth();
   void TakeOldGroundTruth(std::int64_t seq);
   void SetGroundTruth(const std::pair<const std::int64_t, GroundTruth>& pose);
-  /// Warns where times do not go on.
+  /// Warns if times do not increase.
   void WatchTime(const Header& header);
-  void Append(const MapChunk& chunk);
   void WriteChunk();
   void CloseSession();
-  /// Takes the folder over from an earlier run.
-  void ReplaceEarlierResults();
-  /// Opens the map of the session in work, at its end or where a kill left it.
-  void OpenMap(std::int64_t num_bytes);
-  /// Throws InputError where the map, as it was read, is not what was recorded.
-  void CompareWithRecorded(const FourDMap& map, const MapFileSummary& summary,
-                           std::int64_t num_bytes) const;
-  std::string PathOf(const std::string& name) const { return results_.PathOf(prefix_ + name); }
 
   MapRecorderOptions options_;
-  OutputFolder results_;
-  std::string prefix_;  // of the session's files in the folder: "" or "session_2/"
-  std::string session_directory_;
-  int num_sessions_ = 0;
+  SessionFiles files_;
   std::int64_t session_ = 0;
-  std::unique_ptr<MapFileWriter> file_;  // none before the first frame and after a failure
-  std::string failure_;                  // why nothing more could be written; empty if all was
-  std::optional<Header> newest_pose_;    // in time, of the session
+  std::optional<Header> newest_pose_;  // latest in the session
   bool is_time_said_ = false;
-  MapDelta changes_;  // of the open chunk
+  MapDelta changes_;  // contents of the open chunk
   int num_frames_in_chunk_ = 0;
-  std::size_t num_live_ = 0;  // frames of the session in work with a live pose
+  std::size_t num_live_ = 0;  // frames with a live pose in the current session
 
-  // By session, then image number.
+  // By session, then by image number.
   std::map<std::int64_t, std::map<std::int64_t, GroundTruth>> ground_truth_;
   std::map<std::int64_t, std::map<std::int64_t, StereoCamera>> cameras_;
   std::size_t num_ground_truth_ = 0;
-  std::unique_ptr<MapFileWriter> notes_;  // map.airdos.open
-  std::set<std::int64_t> not_noted_;      // ground truth that is not in it
+  std::set<std::int64_t> not_noted_;  // ground truth that is not yet beside the map
 };
 
-/// Reads launch_scripts/config/map_recorder.yaml's keys; the caller calls Finish() of the reader.
-MapRecorderOptions ReadMapRecorderOptions(ConfigReader* config);
 std::unique_ptr<Node> MakeMapRecorderNode(ConfigReader* config);
 
 }  // namespace airdos

@@ -57,7 +57,7 @@ FrameJoiner::Arrival FrameJoiner::Announce(int input, const Header& header, Key*
     return Arrival::kTooFar;
   }
   if (!newest_[slot] || *newest_[slot] < *key) newest_[slot] = *key;
-  // Only after a deadline passed can a frame be done that was not overtaken.
+  // A frame can be done without being overtaken only after a deadline has expired.
   if (last_done_ && !(*last_done_ < *key)) return Arrival::kLate;
 
   auto [it, is_new] = pending_.try_emplace(*key);

@@ -13,32 +13,36 @@
 #include <vector>
 
 #include "common/geometry/stereo_camera.h"
+#include "common/util/check.h"
 #include "processes/node/frame_joiner.h"
 #include "processes/node/message/channels.h"
 #include "processes/node/message/conversions.h"
+#include "processes/node/message/part_set.h"
 #include "processes/node/node.h"
 #include "processes/node/stray_watch.h"
 
 namespace airdos {
 
 /// A node that works frame by frame. A subclass declares in its constructor which channels make up
-/// a frame (Join, JoinParts), whether it needs the calibration (JoinCalibration) and what it waits
-/// for of its own past (MissingFeedback), and then gets each frame exactly once and in order.
+/// a frame (Join, JoinParts) and whether it needs the calibration (JoinCalibration), and overrides
+/// MissingFeedback if it depends on its own past; it then gets each frame exactly once and in
+/// order.
 template <class Inputs>
 class FrameNode : public Node {
  public:
-  /// A channel has one publisher and LCM keeps its order, so whoever is overtaken is lost. Waiting
-  /// for a swapped message would close a circle with the feedback of the optimizer: a lost message
-  /// of frame k could be given up only when frame k + 1 + window is there, and that frame waits
-  /// for the result of frame k.
+  /// A channel has one publisher and LCM preserves its order, so whatever is overtaken is lost.
+  /// Waiting for reordered messages would form a cycle with the optimizer's feedback: a lost
+  /// message of frame k could be given up only once frame k + 1 + window has arrived, but that
+  /// frame waits for the result of frame k.
   static constexpr int kReorderWindow = 0;
-  /// Frames that may wait at once, and bytes of their messages; the oldest is worked on incomplete
-  /// beyond it (dropped, in realtime pace), so memory stays bounded.
+  /// Limits on pending frames and on the bytes of their messages. Beyond them the oldest frame is
+  /// processed incomplete (dropped, in realtime pace), so memory stays bounded.
   static constexpr std::size_t kMaxPending = 1000;
   static constexpr std::size_t kMaxPendingBytes = 512u << 20;
-  /// So many frames may come before their calibration, which some say once a second.
+  /// This many frames may arrive before their calibration, which some sources publish once a
+  /// second.
   static constexpr int kPatienceForCalibration = 40;
-  /// Sessions whose calibration is kept; beyond it the one that was heard first is forgotten.
+  /// Number of sessions whose calibration is kept; beyond it the oldest one is forgotten.
   static constexpr std::size_t kMaxCalibrations = 100;
 
   using Node::Node;
@@ -80,7 +84,7 @@ class FrameNode : public Node {
     const std::optional<FrameJoiner::Frame> frame = joiner_->Oldest();
     if (!frame) return "";
     std::string text;
-    for (const int input : frame->awaited)  // what was overtaken is lost: nobody waits for it
+    for (const int input : frame->awaited)  // what was overtaken is lost, so nobody waits for it
       text += channels_of_inputs_[static_cast<std::size_t>(input)] + " ";
     if (!HasCalibration(frame->header)) text += std::string(channel::kCalibration) + " ";
     for (const std::string& name : MissingFeedback(frame->header)) text += name + " ";
@@ -93,7 +97,7 @@ class FrameNode : public Node {
   }
 
  protected:
-  /// One message of the channel for each frame.
+  /// Joins a channel with one message per frame.
   template <class Message>
   void Join(const std::string& channel, std::optional<Message> Inputs::*field) {
     const int input = AddInput(channel);
@@ -103,29 +107,30 @@ class FrameNode : public Node {
     });
   }
 
-  /// One or more messages of the channel for each frame, numbered by `part` and `num_parts`; handed
-  /// over in order of `part` once all are there. Only one set is kept: the first part of a later
-  /// frame gives up what is incomplete.
+  /// Joins a channel with one or more messages per frame, numbered by `part` and `num_parts`. They
+  /// are handed over in order of `part` once all have arrived. Only one set is kept: the first part
+  /// of a later frame discards an incomplete set.
   template <class Message>
   void JoinParts(const std::string& channel, std::vector<Message> Inputs::*field) {
     const int input = AddInput(channel);
-    const auto set = std::make_shared<PartSet<Message>>();
+    const auto set = std::make_shared<PartsOfFrame<Message>>();
     Subscribe<Message>(channel, [this, input, field, set](Message&& message) {
       const Header header = HeaderOf(message);
       FrameJoiner::Key key;
       const FrameJoiner::Arrival arrival = Joiner().Announce(input, header, &key);
       if (arrival != FrameJoiner::Arrival::kNew) return Refused(arrival, input, header);
       if (set->parts.empty() || set->key < key || key < set->key) *set = {key, {}};
-      return AddPart(std::move(message), set.get(), [&](std::vector<Message>&& parts) {
-        Arrived(input, header, [&](Inputs& inputs) { inputs.*field = std::move(parts); });
-      });
+      const std::string refusal = set->parts.Add(std::move(message));
+      if (!refusal.empty() || !set->parts.is_complete()) return refusal;
+      std::vector<Message> parts = set->parts.Take();
+      return Arrived(input, header, [&](Inputs& inputs) { inputs.*field = std::move(parts); });
     });
   }
 
   /// Frames wait for the calibration of their session; ProcessFrame() then finds it in camera().
-  /// The first one of a session holds for all of it, frames before it included: if it could
-  /// change, which frames it holds for would depend on how fast it travels. Another one is
-  /// rejected.
+  /// The first calibration of a session applies to the whole session, including earlier frames: if
+  /// it could change, the frames it applies to would depend on how fast it travels. A different one
+  /// is rejected.
   void JoinCalibration() {
     needs_calibration_ = true;
     Subscribe<stereo_calibration_t>(channel::kCalibration, [this](stereo_calibration_t&& message) {
@@ -137,16 +142,17 @@ class FrameNode : public Node {
     });
   }
 
-  /// Channels of feedback without which the frame must not start; empty where none is needed.
+  /// Channels of feedback without which the frame must not start; empty if none is needed.
   virtual std::vector<std::string> MissingFeedback(const Header&) const { return {}; }
-  /// A frame of another session than the one before is about to be processed: forget everything.
+  /// Called before a frame of a new session is processed: forget everything.
   virtual void StartSession(const Header& header) = 0;
   /// Publishes exactly one output for the frame, whatever is missing from `inputs`. If it throws,
-  /// what it published is dropped and it is called again, with nothing in `inputs`, as others wait
-  /// for that output; then the exception goes on to whoever called Step() or CompleteOldest().
+  /// whatever it published is dropped and it is called again with empty `inputs`, because others
+  /// wait for that output; then the exception propagates to the caller of Step() or
+  /// CompleteOldest().
   virtual void ProcessFrame(const Header& header, Inputs inputs) = 0;
 
-  /// Numbers that came on a channel that was joined.
+  /// The numbers that arrived on a joined channel.
   const StrayWatch& numbers_of(const std::string& channel) const {
     const auto& names = channels_of_inputs_;
     const auto place = std::find(names.begin(), names.end(), channel);
@@ -154,37 +160,29 @@ class FrameNode : public Node {
     return watches_[static_cast<std::size_t>(place - names.begin())];
   }
 
-  /// Calibration of the frame in work.
+  /// Calibration of the frame being processed.
   const StereoCamera& camera() const { return camera_; }
+
+  /// Whether an image (cv::Mat) of the frame in work decoded, and has the size that the calibration
+  /// says. Counts it as rejected otherwise; `reason` says why it did not decode.
+  template <class Image>
+  bool Fits(const std::optional<Image>& image, const std::string& channel,
+            const std::string& reason) {
+    if (image && image->cols == camera_.width && image->rows == camera_.height) return true;
+    Reject(channel, image ? "its size is not that of the calibration" : reason);
+    return false;
+  }
 
  private:
   struct Slot {
     Inputs inputs;
-    std::size_t num_bytes = 0;  // of the messages that they came in
+    std::size_t num_bytes = 0;  // of the messages that they arrived in
   };
   template <class Message>
-  struct PartSet {
+  struct PartsOfFrame {
     FrameJoiner::Key key;
-    std::map<int, Message> parts;
+    PartSet<Message> parts;
   };
-
-  template <class Message, class Deliver>
-  std::string AddPart(Message&& message, PartSet<Message>* set, Deliver deliver) {
-    const int part = message.part;
-    const int num_parts = message.num_parts;
-    if (!set->parts.empty() && set->parts.begin()->second.num_parts != num_parts) {
-      return "num_parts " + std::to_string(num_parts) + " differs from that of another part";
-    }
-    if (!set->parts.emplace(part, std::move(message)).second) {
-      return "part " + std::to_string(part) + " came twice";
-    }
-    if (static_cast<int>(set->parts.size()) < num_parts) return "";
-    std::vector<Message> parts;
-    for (auto& [number, content] : set->parts) parts.push_back(std::move(content));
-    set->parts.clear();
-    deliver(std::move(parts));
-    return "";
-  }
 
   int AddInput(const std::string& channel) {
     AIRDOS_CHECK(joiner_ == nullptr);
@@ -245,7 +243,7 @@ class FrameNode : public Node {
 
   std::string Refused(FrameJoiner::Arrival arrival, int input, const Header& header) {
     if (arrival == FrameJoiner::Arrival::kTooFar) {
-      return "seq " + std::to_string(header.seq) + " is far beyond the one before";
+      return "seq " + std::to_string(header.seq) + " is far beyond the previous one";
     }
     const auto slot = static_cast<std::size_t>(input);
     ++counters(channels_of_inputs_[slot]).num_duplicate;
@@ -266,7 +264,7 @@ class FrameNode : public Node {
       others = "; there is one for session " + std::to_string(calibrated_.back());
     }
     Warn("no CALIBRATION yet for session " + std::to_string(session) +
-         ": no pose will come until it does" + others);
+         ": there are no poses until it arrives" + others);
   }
 
   void Work(const FrameJoiner::Frame& frame) {
@@ -281,7 +279,7 @@ class FrameNode : public Node {
       ++counters(channels_of_inputs_[static_cast<std::size_t>(input)]).num_missing;
     }
     if (!frame.missing.empty() || !HasCalibration(frame.header)) ++mutable_frames().num_incomplete;
-    if (!HasCalibration(frame.header)) {  // without it no pixel has a meaning
+    if (!HasCalibration(frame.header)) {  // without it pixels have no meaning
       WarnOfCalibration(frame.header.session);
       return;
     }
@@ -304,16 +302,16 @@ class FrameNode : public Node {
   }
 
   std::vector<std::string> channels_of_inputs_;
-  std::vector<StrayWatch> watches_;  // of each input
+  std::vector<StrayWatch> watches_;  // one per input
   std::unique_ptr<FrameJoiner> joiner_;
   std::map<FrameJoiner::Key, Slot> inputs_;
   std::size_t num_pending_bytes_ = 0;
   bool needs_calibration_ = false;
-  std::map<std::int64_t, StereoCamera> calibrations_;  // by session
-  std::deque<std::int64_t> calibrated_;                // their sessions, first heard first
+  std::map<std::int64_t, StereoCamera> calibrations_;  // keyed by session
+  std::deque<std::int64_t> calibrated_;                // their sessions, oldest first
   StereoCamera camera_;
   std::optional<std::int64_t> session_;
-  int num_uncalibrated_ = 0;  // frames in a row that came without
+  int num_uncalibrated_ = 0;  // consecutive frames without a calibration
   std::optional<std::int64_t> uncalibrated_said_;
 };
 

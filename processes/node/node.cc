@@ -5,7 +5,7 @@
 namespace airdos {
 namespace {
 
-constexpr std::size_t kMaxTextBytes = 500;  // STATUS takes no text that is much longer
+constexpr std::size_t kMaxTextBytes = 500;  // STATUS does not take much longer texts
 
 }  // namespace
 
@@ -18,8 +18,7 @@ std::vector<std::string> Node::input_channels() const {
 void Node::Receive(const std::string& channel, const void* data, std::size_t size) {
   const auto it = handlers_.find(channel);
   if (it == handlers_.end()) return;
-  ChannelCounters& counters = channels_[channel];
-  ++counters.num_received;
+  ++counters(channel).num_received;
   num_bytes_received_ = size;
   std::string reason;
   try {
@@ -27,16 +26,19 @@ void Node::Receive(const std::string& channel, const void* data, std::size_t siz
   } catch (const std::exception& error) {
     reason = error.what();
   }
-  if (reason.empty()) return;
-  ++counters.num_rejected;
-  counters.last_reject = reason.substr(0, kMaxTextBytes);
+  if (!reason.empty()) Reject(channel, reason);
+}
+
+void Node::Reject(const std::string& channel, const std::string& reason) {
+  ++counters(channel).num_rejected;
+  counters(channel).last_reject = reason.substr(0, kMaxTextBytes);
 }
 
 void Node::Warn(const std::string& warning) {
   const std::string text = warning.substr(0, kMaxTextBytes);
   warnings_.push_back(text);
   if (warnings_.size() > kMaxWarnings) warnings_.pop_front();
-  // Bounded as well, for owners who never ask.
+  // Bounded as well, for owners that never fetch them.
   if (new_warnings_.size() < kMaxWarnings) new_warnings_.push_back(text);
 }
 

@@ -36,7 +36,7 @@ void RunTally::Take(const static_features_t& features) {
 }
 
 void RunTally::Take(const state_estimate_t& estimate) {
-  // The optimizer counts no observations in its first frame: it has no map yet.
+  // The optimizer counts no observations in its first frame, since it has no map yet.
   const bool has_features = with_features_.erase({estimate.session, estimate.seq}) > 0;
   const bool has_people = estimate.trusted == state_estimate_t::TRUSTED_WITH_PEOPLE;
   Add(!HasPose(estimate)                                     ? Source::kNone
@@ -73,7 +73,7 @@ std::string WhyInVain(const RunTally::Counts& counts) {
   }
   if (counts.num_static_features == 0 && counts.num_from_images == 0) {
     return "no static landmark was seen in " + std::to_string(counts.num_frames) +
-           " frames, so the poses mean nothing: airdos-check says what is wrong with the input";
+           " frames, so the poses are meaningless: airdos-check says what is wrong with the input";
   }
   return "";
 }

@@ -12,19 +12,20 @@
 
 namespace airdos {
 
-/// Where the poses of a run came from, frame by frame: what is said at its end, and what its exit
-/// code goes by. Fed with STATE_ESTIMATE, and before it STATIC_FEATURES of the same frame if there
-/// are any; other channels and what does not decode are passed over.
+/// Where the poses of a run came from, frame by frame: determines its closing summary and its exit
+/// code. Takes STATE_ESTIMATE and, before it, STATIC_FEATURES of the same frame if available;
+/// ignores other channels and messages that do not decode.
 class RunTally {
  public:
+  /// Numbers of frames by origin of their pose.
   struct Counts {
     std::int64_t num_frames = 0;       ///< with a STATE_ESTIMATE
-    std::int64_t num_from_images = 0;  ///< posed, with static landmarks in view
-    std::int64_t num_from_people = 0;  ///< posed by people alone
-    /// By how the camera moved before; a front end that sees people may have let them guide it.
+    std::int64_t num_from_images = 0;  ///< with static landmarks in view
+    std::int64_t num_from_people = 0;  ///< from people only
+    /// From the camera's previous motion; a frontend that sees people may have used them as well.
     std::int64_t num_predicted = 0;
     std::int64_t num_without_pose = 0;
-    std::int64_t num_static_features = 0;  ///< of all frames
+    std::int64_t num_static_features = 0;  ///< in all frames
   };
 
   void Take(const std::string& channel, const void* data, std::size_t size);
@@ -34,19 +35,19 @@ class RunTally {
 
  private:
   enum class Source { kNone, kImages, kPeople, kPrediction };
-  using FrameKey = std::pair<std::int64_t, std::int64_t>;  // session, seq
+  using FrameKey = std::pair<std::int64_t, std::int64_t>;  // (session, seq)
 
   void Add(Source source);
 
   static constexpr std::size_t kMaxOpenFrames = 1000;
-  std::set<FrameKey> with_features_;  // frames whose estimate has not come
+  std::set<FrameKey> with_features_;  // frames whose estimate has not arrived yet
   Counts counts_;
 };
 
-/// "from images 98, from people 1, predicted only 1", and ", without a pose 2" where there are any.
+/// "from images 98, from people 1, predicted only 1" and, if there are any, ", without a pose 2".
 std::string ToText(const RunTally::Counts& counts);
 
-/// Why a run was in vain, with what to do; empty for a run that was not, or that had no frame.
+/// Why a run was in vain, with the remedy; empty if it was not, or if it had no frame.
 std::string WhyInVain(const RunTally::Counts& counts);
 
 }  // namespace airdos

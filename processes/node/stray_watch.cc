@@ -22,13 +22,13 @@ void StrayWatch::AddNew(const Header& header) {
 }
 
 std::string StrayWatch::AlreadyWorkedOn(std::int64_t session) const {
-  std::string text = "session " + std::to_string(session) + " was already worked on";
+  std::string text = "session " + std::to_string(session) + " was already processed";
   text += newest_->session == session
               ? " up to image " + std::to_string(newest_->seq)
               : ", session " + std::to_string(newest_->session) + " came after it";
   return text +
-         ": what comes again of it is dropped; to play it again use replay_log.sh (a new session "
-         "each time) or airdos-stereo-player --data LOG --session N, or start the processes again";
+         ": repeated messages are dropped; to play it again use replay_log.sh (a new session "
+         "each time) or airdos-stereo-player --data LOG --session N, or restart the processes";
 }
 
 std::string StrayWatch::AddRefused(const Header& header) {
@@ -45,8 +45,8 @@ std::string StrayWatch::AddRefused(const Header& header) {
   }
   if (!too_late_.Add(header)) return "";
   return channel_ + ": image " + std::to_string(header.seq) +
-         " comes after that frame, or a later one, was worked on without it: it is dropped, and so "
-         "were those before; do all channels count from the same number? Else a larger "
+         " comes after that frame, or a later one, was processed without it: it is dropped, and so "
+         "were those before; do all channels count from the same number? Otherwise a larger "
          "--deadline-s helps";
 }
 

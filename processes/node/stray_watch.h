@@ -10,37 +10,37 @@
 
 namespace airdos {
 
-/// Watches the numbers of one channel's messages and says why so many of them cannot be used: the
-/// same session is played again, the source does not count, or the frames were completed before
-/// they came. Single strays (duplicates, two that changed places) are no matter. Whoever takes the
-/// messages in tells which ones are new and which are refused.
+/// Watches the numbers of one channel's messages and reports why many of them cannot be used: the
+/// same session is being played again, the source does not count, or the frames were completed
+/// before the messages came. Single strays (duplicates, or two messages that changed places) are
+/// ignored. The caller tells which messages are new and which are refused.
 class StrayWatch {
  public:
-  /// So many in a row are no accident.
+  /// This many in a row are no accident.
   static constexpr int kMinStrays = 3;
 
-  /// `says_again`: whether it is the channel that tells of sessions that are played again. All
-  /// channels of one source play along; one that says so is enough.
+  /// `says_again`: whether this channel reports sessions that are played again. That affects all
+  /// channels of a source, but one report is enough.
   StrayWatch(std::string channel, bool says_again)
       : channel_(std::move(channel)), says_again_(says_again) {}
 
-  /// A message that takes part in its frame.
+  /// Adds a message that is used in its frame.
   void AddNew(const Header& header);
-  /// A message that comes too late, or twice. Returns what is to be said now; empty if nothing.
+  /// Adds a message that is too late or a duplicate. Returns a warning, or an empty text.
   std::string AddRefused(const Header& header);
 
-  /// Of the messages that took part: the first one of the newest one's session, and the newest.
+  /// Among the messages used: the first one in the newest one's session, and the newest.
   const std::optional<Header>& first_of_session() const { return first_of_session_; }
   const std::optional<Header>& newest() const { return newest_; }
 
  private:
-  /// Numbers that go on, one after the other, and are all refused. Between those of other
-  /// messages, which are taken, they must follow on one another.
+  /// Increasing numbers that are all refused. Where accepted messages come in between, the numbers
+  /// must be consecutive.
   struct Run {
     std::optional<Header> last;
     int count = 0;
     bool is_interrupted = false;
-    /// True once, when there are enough of them.
+    /// Returns true once, when there are enough of them.
     bool Add(const Header& header);
   };
 
@@ -52,7 +52,7 @@ class StrayWatch {
   std::optional<Header> newest_;
   Run again_;
   Run too_late_;
-  int num_same_number_ = 0;  // of the newest one, with other times
+  int num_same_number_ = 0;  // messages with the newest number, but other times
 };
 
 }  // namespace airdos

@@ -10,8 +10,8 @@
 
 namespace airdos {
 
-/// What was told of each landmark last, so that it can be told again to whoever comes late: a few
-/// each frame, in order of their numbers, round and round.
+/// The last published state of each landmark, so that landmarks can be repeated for receivers that
+/// start late: a few per frame, in order of their numbers, cyclically.
 class LandmarkArchive {
  public:
   static constexpr std::size_t kMaxLandmarks = 100000;
@@ -20,10 +20,10 @@ class LandmarkArchive {
   explicit LandmarkArchive(std::size_t max_landmarks = kMaxLandmarks)
       : max_landmarks_(max_landmarks) {}
 
-  /// Takes what a frame tells. Beyond the limit the oldest landmarks, those of the lowest numbers,
-  /// are forgotten. True if this happens for the first time.
+  /// Records what a frame publishes. Beyond the limit, the oldest landmarks (those with the lowest
+  /// numbers) are forgotten. Returns true when this happens for the first time.
   bool Add(const MapChanges& changes);
-  /// The next ones in turn, at most kRepeatedPerFrame and each at most once.
+  /// The next landmarks in turn: at most kRepeatedPerFrame, and each at most once.
   std::vector<MapChanges::Landmark> NextRepeated();
 
   std::size_t size() const { return landmarks_.size(); }

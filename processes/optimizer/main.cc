@@ -4,7 +4,7 @@
 int main(int argc, char** argv) {
   airdos::ProcessInfo info;
   info.program = "airdos-optimizer";
-  info.config_name = "optimizer";
+  info.options = airdos::PagesOf<airdos::OptimizerOptions>();
   info.description = "Bundle adjustment of camera, static landmarks and people";
   info.make_node = airdos::MakeOptimizerNode;
   info.publishes_frame_done = true;

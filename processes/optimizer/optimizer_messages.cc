@@ -53,9 +53,7 @@ void AddFeatures(const static_features_t& message, FrameInput* input) {
 /// it is no covariance.
 std::optional<Eigen::Matrix3d> ImageCovariance(const StereoCamera& camera,
                                                const human_observation_t& message, std::size_t i) {
-  const std::vector<float>& s = message.covariance_C[i];
-  Eigen::Matrix3d S;
-  S << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+  const Eigen::Matrix3d S = ToCovariance(message.covariance_C[i]);
   const Eigen::Vector3d p_C(message.x_C_m[i], message.y_C_m[i], message.z_C_m[i]);
   if (!S.allFinite() || !p_C.allFinite() || !(p_C.z() > 0)) return std::nullopt;
   const Eigen::Matrix3d J = camera.ProjectStereoJacobian(p_C);
@@ -108,10 +106,10 @@ std::int8_t ToStatus(FrameEstimate::Status status) {
   return state_estimate_t::STATUS_INVALID;
 }
 
-/// A system of hardly any information may come out of its inversion with variances below zero, or
-/// beyond what receivers take: then it says that nothing is known.
+/// Inverting a system with hardly any information may yield variances that are negative or beyond
+/// what receivers accept; such a covariance is replaced by one that states that nothing is known.
 Eigen::Matrix<double, 6, 6> Published(const Eigen::Matrix<double, 6, 6>& covariance) {
-  constexpr double kMaxVariance = 1e12;  // as Validate() has it
+  constexpr double kMaxVariance = 1e12;  // as in Validate()
   constexpr double kUnknownVariance = 1e6;
   const bool is_sane = covariance.allFinite() && covariance.diagonal().minCoeff() >= 0 &&
                        covariance.cwiseAbs().maxCoeff() <= kMaxVariance;
@@ -153,7 +151,7 @@ human_state_t ToHumanState(const HumanState& state) {
   return message;
 }
 
-/// Fills messages one after the other, each up to the size that may travel.
+/// Fills one message after another, each up to the size that can travel.
 class PartWriter {
  public:
   explicit PartWriter(const Header& header) : header_(header) { StartPart(); }
@@ -205,10 +203,7 @@ class PartWriter {
 
  private:
   void StartPart() {
-    map_update_t part{};
-    part.utime = header_.utime;
-    part.seq = header_.seq;
-    part.session = header_.session;
+    auto part = MessageOf<map_update_t>(header_);
     part.part = static_cast<std::int32_t>(parts_.size());
     parts_.push_back(part);
     num_bytes_ = 0;
@@ -248,10 +243,7 @@ FrameInput ToFrameInput(const Header& header, const StereoCamera& camera,
 }
 
 state_estimate_t ToStateEstimate(const Header& header, const FrameEstimate& estimate) {
-  state_estimate_t message{};
-  message.utime = header.utime;
-  message.seq = header.seq;
-  message.session = header.session;
+  auto message = MessageOf<state_estimate_t>(header);
   message.status = ToStatus(estimate.status);
   FromSe3(estimate.T_W_C, message.position_W_C, message.orientation_W_C);
   const auto covariance = Published(estimate.covariance);
@@ -269,9 +261,9 @@ state_estimate_t ToStateEstimate(const Header& header, const FrameEstimate& esti
   message.num_people = summary.num_people;
   message.num_rigidity_factors = summary.num_rigidity;
   message.num_motion_factors = summary.num_motion;
-  message.num_rigidity_eliminated = summary.num_rigidity_eliminated;
-  message.num_motion_eliminated = summary.num_motion_eliminated;
-  message.num_reprojection_eliminated = summary.num_reprojection_eliminated;
+  message.num_rigidity_eliminated = summary.num_rigidity_rejected;
+  message.num_motion_eliminated = summary.num_motion_rejected;
+  message.num_reprojection_eliminated = summary.num_reprojection_rejected;
   message.num_iterations = summary.num_iterations;
   message.initial_cost = summary.initial_cost;
   message.final_cost = summary.final_cost;

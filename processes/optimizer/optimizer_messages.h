@@ -12,20 +12,20 @@
 
 namespace airdos {
 
-// Between the optimizer's messages and the types of common/optimization.
+// Conversions between the optimizer's messages and the types of common/optimization.
 
-/// Either message may be null: it never came. Observations that are not finite are left out, and so
-/// are joints beyond the body model and those whose covariance is none.
+/// Either message may be null if it never arrived. Observations that are not finite are left out,
+/// and so are joints outside the body model and those without a valid covariance.
 FrameInput ToFrameInput(const Header& header, const StereoCamera& camera,
                         const static_features_t* features, const human_observations_t* humans);
 
 state_estimate_t ToStateEstimate(const Header& header, const FrameEstimate& estimate);
 
-/// Of a frame for which there is no pose, since the front end has not been heard yet.
+/// For a frame without a pose, because the frontend has not been heard yet.
 state_estimate_t UnknownStateEstimate(const Header& header);
 
-/// At least one part; each encodes to less than 120 kB (README of lcmtypes: why). `repeated` are
-/// landmarks of earlier frames that are told again.
+/// At least one part, each of which encodes to less than 120 kB (lcmtypes/README.md explains why).
+/// `repeated` are landmarks of earlier frames that are published again.
 std::vector<map_update_t> ToMapUpdates(const Header& header, const MapChanges& changes,
                                        const std::vector<MapChanges::Landmark>& repeated = {});
 

@@ -11,7 +11,7 @@
 namespace airdos {
 namespace {
 
-/// What is published of a frame.
+/// What is published for a frame.
 struct Answer {
   state_estimate_t state;
   MapChanges changes;
@@ -19,7 +19,7 @@ struct Answer {
 
 Answer UnknownAnswer(const Header& header) { return {UnknownStateEstimate(header), MapChanges()}; }
 
-/// Whether others would take it.
+/// Whether receivers would accept it.
 bool IsValid(const Header& header, const Answer& answer) {
   const std::vector<map_update_t> updates = ToMapUpdates(header, answer.changes);
   return Validate(answer.state).empty() &&
@@ -49,18 +49,18 @@ void OptimizerNode::StartSession(const Header&) {
 void OptimizerNode::ProcessFrame(const Header& header, OptimizerInputs inputs) {
   Answer answer = UnknownAnswer(header);
   if (inputs.features && inputs.features->tracking_state == static_features_t::STATE_INVALID) {
-    inputs.features.reset();  // the front end knows nothing of the frame
+    inputs.features.reset();  // the frontend knows nothing about the frame
   }
-  // Where W is only the front end can say: to begin at its origin would be another W when this
-  // process was started again in the middle. And what nobody saw can only be predicted, which into
-  // the past makes no sense.
+  // Only the frontend can tell where W is: if this process was restarted in the middle of a
+  // session, starting at the origin would define a different W. And a frame that nothing was
+  // measured in can only be predicted, which makes no sense backwards in time.
   const bool is_later = newest_utime_ && header.utime > *newest_utime_;
   if (inputs.features || (window_ != nullptr && is_later)) {
     newest_utime_ = header.utime;
     FrameResult result = Adjust(header, inputs);
     answer = {ToStateEstimate(header, result.estimate), std::move(result.changes)};
     if (!IsValid(header,
-                 answer)) {  // led astray, as by a front end that jumps by thousands of kilometres
+                 answer)) {  // misled, as by a frontend that jumps by thousands of kilometres
       window_.reset();
       answer = UnknownAnswer(header);
     }
@@ -70,7 +70,7 @@ void OptimizerNode::ProcessFrame(const Header& header, OptimizerInputs inputs) {
   tally_.Take(answer.state);
   if (archive_.Add(answer.changes)) {
     Warn("the map has more than " + std::to_string(LandmarkArchive::kMaxLandmarks) +
-         " landmarks: the oldest are not told again to who joins the bus late; the recorder has "
+         " landmarks: the oldest are not repeated for receivers that join late; the recorder has "
          "them");
   }
   for (const map_update_t& part : ToMapUpdates(header, answer.changes, archive_.NextRepeated())) {
@@ -101,7 +101,7 @@ FrameResult OptimizerNode::Adjust(const Header& header, const OptimizerInputs& i
                                          inputs.features ? &*inputs.features : nullptr,
                                          inputs.humans ? &*inputs.humans : nullptr));
   } catch (const std::exception&) {
-    window_.reset();  // it may be halfway through; the front end knows where to go on
+    window_.reset();  // it may be half updated; the frontend knows where to continue
     throw;
   }
 }

@@ -16,23 +16,24 @@
 
 namespace airdos {
 
+/// The messages of one frame.
 struct OptimizerInputs {
   std::optional<static_features_t> features;
   std::optional<human_observations_t> humans;  ///< only where people are on
 };
 
 /// STATIC_FEATURES and, with `people: on`, HUMAN_OBSERVATIONS in; STATE_ESTIMATE and MAP_UPDATE
-/// (one or more parts) out, for each frame once. A frame whose inputs never came is predicted, if
-/// it is later than the one before; else, and in frames before the first STATIC_FEATURES, nothing
-/// is known (STATUS_INVALID). W is where the front end's first message has it, so that a process
-/// that was started again goes on in the same W. So it does after an estimate that is beyond all
-/// bounds of its message, which is not published. Each MAP_UPDATE tells some landmarks again, so
-/// that who comes late gets the map as well.
+/// (one or more parts) out, once per frame. A frame whose inputs never arrived is predicted if it
+/// is later than the previous one; otherwise, and for frames before the first STATIC_FEATURES,
+/// nothing is known (STATUS_INVALID). W is defined by the frontend's first message, so a restarted
+/// process continues in the same W. It also starts afresh after an estimate that exceeds the bounds
+/// of its message, which is not published. Each MAP_UPDATE repeats some landmarks, so that
+/// receivers that start late get the map as well.
 class OptimizerNode final : public FrameNode<OptimizerInputs> {
  public:
   explicit OptimizerNode(const OptimizerOptions& options);
 
-  /// How many frames have a pose, and from where.
+  /// How many frames have a pose, and where these came from.
   std::string summary() const override;
   std::string why_in_vain() const override;
 
@@ -43,9 +44,9 @@ class OptimizerNode final : public FrameNode<OptimizerInputs> {
 
   OptimizerOptions options_;
   std::unique_ptr<SlidingWindowOptimizer> window_;  // of the session; null before its first frame
-  RunTally tally_;                                  // of all sessions
+  RunTally tally_;                                  // over all sessions
   LandmarkArchive archive_;                         // of the session
-  std::optional<std::int64_t> newest_utime_;        // of the session, of a frame that has a pose
+  std::optional<std::int64_t> newest_utime_;        // of the session, among frames with a pose
 };
 
 std::unique_ptr<Node> MakeOptimizerNode(ConfigReader* config);

@@ -2,6 +2,7 @@
 #define AIRDOS_PROCESSES_OPTIMIZER_OPTIMIZER_OPTIONS_H_
 
 #include "common/config/config_reader.h"
+#include "common/config/option_table.h"
 #include "common/optimization/window/sliding_window.h"
 
 namespace airdos {
@@ -12,11 +13,13 @@ enum class PeopleMode {
   kOn,        ///< their joints are unknowns of the adjustment
 };
 
-/// launch_scripts/config/optimizer.yaml
 struct OptimizerOptions {
   PeopleMode people = PeopleMode::kOn;
   SlidingWindowOptions window;
 };
+
+/// launch_scripts/config/optimizer.yaml
+OptionTable TableOf(OptimizerOptions* options);
 
 /// Throws InputError naming key and value. Leaves Finish() to the caller.
 OptimizerOptions ReadOptimizerOptions(ConfigReader* config);

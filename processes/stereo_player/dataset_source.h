@@ -13,25 +13,25 @@
 
 namespace airdos {
 
-/// The frames of a data set as StereoPlayer makes them.
+/// The frames of a data set, as made by StereoPlayer.
 class DatasetSource : public FrameSource {
  public:
   /// Frames with first <= index <= last; the image number is the index. Throws InputError if the
-  /// folder cannot be used or has none of these; so does NextFrame() for a file. `calibration`:
-  /// SequenceOptions.
+  /// folder cannot be used or has no such frame; NextFrame() throws it if a file cannot be used.
+  /// `calibration`: see SequenceOptions.
   DatasetSource(const std::string& folder, std::int64_t first, std::int64_t last,
                 std::int64_t session, const ImagePackerOptions& options,
                 const std::string& calibration = "");
 
   std::vector<Envelope> NextFrame() override;
   double fraction_done() const override;
-  /// What the data set assumed first, then what happened to its images.
+  /// First what the data set assumed, then what happened to its images.
   std::vector<std::string> TakeNotes() override;
 
  private:
   std::unique_ptr<StereoSequence> sequence_;
   StereoPlayer player_;
-  std::vector<std::string> assumed_;  // until it was said
+  std::vector<std::string> assumed_;  // until they have been returned
   std::size_t first_ = 0;
   std::size_t end_ = 0;
   std::size_t next_ = 0;

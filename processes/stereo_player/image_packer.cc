@@ -41,13 +41,13 @@ void ImagePacker::NotePixels(const ImageHeader& header, const Picture& picture,
   if (header.orientation != 1) {
     Note("orientation " + std::to_string(header.orientation),
          name + ": its EXIF data want it " + OrientationText(header.orientation) +
-             "; this is ignored, pixels are taken as they are stored");
+             "; this is ignored, pixels are used as stored");
   }
   if (header.bits == 16) Note("range", RangeText(range_));
   if (picture.saturated > 1e-3) {
     Note("saturated", name + ": " + std::to_string(std::lround(100 * picture.saturated)) +
                           " % of its samples have more than " + std::to_string(range_.bits) +
-                          " bits and are cut off at white");
+                          " bits and are clipped to white");
   }
   if (header.has_alpha()) Note("alpha", name + ": its alpha channel is not used");
 }
@@ -83,7 +83,7 @@ bool ImagePacker::PackJpeg(const cv::Mat& image, image_t* message) {
     cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
     if (static_cast<int>(bytes.size()) > options_.max_image_bytes) continue;
     Note("quality " + std::to_string(quality),
-         "images are encoded as JPEG of quality " + std::to_string(quality) + " to fit into " +
+         "images are encoded as JPEG with quality " + std::to_string(quality) + " to fit into " +
              std::to_string(options_.max_image_bytes) + " bytes");
     SetData(std::move(bytes), image_t::ENCODING_JPEG, message);
     return true;

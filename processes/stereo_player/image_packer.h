@@ -12,35 +12,37 @@
 
 namespace airdos {
 
+/// How images are encoded, and how large their messages may be.
 struct ImagePackerOptions {
+  /// When an image file is re-encoded.
   enum class Encoding {
-    kAuto,  ///< a file that fits travels unchanged, any other becomes a JPEG
-    kJpeg,  ///< JPEG always; a JPEG file that fits travels unchanged
-    kPng,   ///< lossless always, whatever the size
+    kAuto,  ///< a file that fits travels unchanged; any other becomes a JPEG
+    kJpeg,  ///< always JPEG; a JPEG file that fits travels unchanged
+    kPng,   ///< always lossless, whatever the size
   };
   Encoding encoding = Encoding::kAuto;
   int max_image_bytes = 120000;
   std::vector<int> jpeg_qualities = {95, 92, 90, 85, 80, 70, 60, 50, 40, 30};  ///< tried in order
 };
 
-/// Puts image files into messages so that each message is small enough to travel without loss.
+/// Packs image files into messages, each small enough to travel without loss.
 class ImagePacker {
  public:
   explicit ImagePacker(const ImagePackerOptions& options) : options_(options) {}
 
-  /// How 16-bit pictures become 8 bits; they cannot be packed before this is known.
+  /// Sets how 16-bit pictures become 8 bits; they cannot be packed before this is set.
   void SetSixteenBitRange(const SixteenBitRange& range) { range_ = range; }
 
-  /// `file` is a whole JPEG or PNG file, `name` says which one in errors. Sets size, encoding and
-  /// data. Throws InputError if the file cannot be decoded (DecodePicture()) or no quality makes it
-  /// fit.
+  /// `file` is a whole JPEG or PNG file, `name` identifies it in errors. Sets size, encoding and
+  /// data. Throws InputError if the file cannot be decoded (DecodePicture()) or if no quality makes
+  /// it fit.
   void Pack(const std::vector<std::uint8_t>& file, const std::string& name, image_t* message);
 
-  /// What people should know about the images that were packed so far, a line each; given once.
+  /// What the user should know about the images packed so far, one line each; each returned once.
   std::vector<std::string> TakeNotes();
 
  private:
-  /// The first note of each kind is kept.
+  /// Only the first note of each kind is kept.
   void Note(const std::string& kind, const std::string& note);
   void NoteLarge();
   void NotePixels(const ImageHeader& header, const Picture& picture, const std::string& name);

@@ -25,7 +25,7 @@ LockstepGate::LockstepGate(const LockstepGateOptions& options, double now_s)
 }
 
 void LockstepGate::NoteNewcomer(const process_status_t& status) {
-  constexpr std::size_t kMostProcesses = 64;  // anybody may say anything
+  constexpr std::size_t kMostProcesses = 64;  // anybody may publish anything
   if (pids_.size() >= kMostProcesses && pids_.count(status.process) == 0) return;
   std::int64_t& pid = pids_[status.process];
   has_newcomer_ = has_newcomer_ || (pid != status.pid && !published_.empty());
@@ -52,7 +52,7 @@ void LockstepGate::OnStatus(const process_status_t& status, double now_s) {
   if (process.state == State::kPresent && process.pid == status.pid) return;
   if (process.state == State::kPresent) {
     Note(status.process + " was restarted (process " + std::to_string(process.pid) + ", now " +
-         std::to_string(status.pid) + "): going on, it missed " +
+         std::to_string(status.pid) + "): continuing, it missed " +
          std::to_string(process.num_in_flight) + " frames at least");
   } else if (process.state == State::kGivenUp) {
     Note(status.process + " is there (process " + std::to_string(status.pid) + ")");
@@ -69,8 +69,8 @@ void LockstepGate::OnFrameDone(const frame_done_t& done, double now_s) {
   if (it == processes_.end()) return;
   Process& process = it->second;
   process.heard_s = now_s;
-  // It works in order, so what was published before is over too: lost on the way to it, or its
-  // FRAME_DONE was lost on the way here.
+  // The process works in order, so earlier frames are done as well: either they, or their
+  // FRAME_DONE, were lost.
   for (std::size_t newer = 0; newer < process.num_in_flight; ++newer) {
     const Published& frame = published_[published_.size() - 1 - newer];
     if (frame.session != done.session || frame.seq != done.seq) continue;
@@ -123,20 +123,20 @@ void LockstepGate::CheckWait(const std::string& name, Process* process, double n
   if (process->state == State::kGivenUp) return;
   if (process->state == State::kAbsent) {
     if (now_s - start_s_ > options_.start_s) {
-      GiveUp(name, "has not said READY for " + Seconds(options_.start_s), process, now_s);
+      GiveUp(name, "has not reported READY for " + Seconds(options_.start_s), process, now_s);
       return;
     }
   } else if (now_s - process->heard_s > options_.silence_s) {
     GiveUp(name, "is silent for " + Seconds(options_.silence_s), process, now_s);
     return;
   } else if (process->num_in_flight > 0 && now_s - process->progress_s > options_.no_progress_s) {
-    GiveUp(name, "finishes no frame for " + Seconds(options_.no_progress_s), process, now_s);
+    GiveUp(name, "has finished no frame for " + Seconds(options_.no_progress_s), process, now_s);
     return;
   } else if (process->num_in_flight == 0) {
     return;
   } else if (process->is_idle && now_s - process->progress_s > options_.idle_s) {
-    Note(name + " has no frame to work on for " + Seconds(options_.idle_s) + ": the " +
-         std::to_string(process->num_in_flight) + " on their way to it are lost, going on");
+    Note(name + " has had no frame to process for " + Seconds(options_.idle_s) + ": the " +
+         std::to_string(process->num_in_flight) + " in transit to it are lost, continuing");
     process->num_in_flight = 0;
     return;
   }
@@ -144,13 +144,13 @@ void LockstepGate::CheckWait(const std::string& name, Process* process, double n
   process->reminded_s = now_s;
   Note("waiting for " + name +
        (process->state == State::kAbsent
-            ? " to say READY"
+            ? " to report READY"
             : " to finish a frame, " + std::to_string(process->num_in_flight) + " in flight"));
 }
 
 void LockstepGate::GiveUp(const std::string& name, const std::string& why, Process* process,
                           double now_s) {
-  Note(name + " " + why + ": going on without it");
+  Note(name + " " + why + ": continuing without it");
   process->state = State::kGivenUp;
   process->num_in_flight = 0;
   process->reminded_s = now_s;
@@ -159,7 +159,7 @@ void LockstepGate::GiveUp(const std::string& name, const std::string& why, Proce
 void LockstepGate::Note(const std::string& line) {
   if (num_notes_ >= kMaxNotes) return;
   ++num_notes_;
-  notes_.push_back(num_notes_ < kMaxNotes ? line : line + " (nothing more will be said)");
+  notes_.push_back(num_notes_ < kMaxNotes ? line : line + " (no more messages will follow)");
 }
 
 std::vector<std::string> LockstepGate::TakeNotes() { return std::exchange(notes_, {}); }

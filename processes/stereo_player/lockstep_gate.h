@@ -13,28 +13,30 @@
 
 namespace airdos {
 
+/// Which processes the LockstepGate waits for, and for how long.
 struct LockstepGateOptions {
-  std::vector<std::string> wait_for;  ///< names of processes as in STATUS; empty: never waits
+  std::vector<std::string> wait_for;  ///< process names as in STATUS; empty to never wait
   int frames_in_flight = 4;
-  double remind_s = 5;        ///< how often a silent process is named
-  double silence_s = 10;      ///< neither STATUS nor FRAME_DONE for longer: goes on without it
-  double no_progress_s = 60;  ///< STATUS but no FRAME_DONE for longer: goes on
-  /// The same of a process whose STATUS says that it has no frame to work on: those on the way to
+  double remind_s = 5;        ///< interval of reminders about a silent process
+  double silence_s = 10;      ///< gives up a process without STATUS and FRAME_DONE
+  double no_progress_s = 60;  ///< gives up a process without FRAME_DONE
+  /// The same for a process whose STATUS says that it has no frame to process: those in transit to
   /// it are lost.
   double idle_s = 10;
-  double start_s = 60;  ///< a process that is not there at the start
+  double start_s = 60;  ///< gives up a process that is absent at the start
 };
 
-/// Decides when the player may publish the next frame: all processes that it waits for have said
-/// READY, and none has more than `frames_in_flight` frames to do. Every wait is bounded; whenever
-/// it gives one up it says so. Has no clock: times are handed in, in seconds of one steady clock.
+/// Decides when the player may publish the next frame: once all processes that it waits for have
+/// reported READY, and none has more than `frames_in_flight` frames to do. Every wait is bounded,
+/// and giving one up is reported. Has no clock: times are passed in, in seconds of one steady
+/// clock.
 class LockstepGate {
  public:
-  /// In realtime pace nobody waits, so a process that never says FRAME_DONE has more and more to
-  /// do: further frames are not remembered.
+  /// In realtime pace nothing waits, so the backlog of a process that never publishes FRAME_DONE
+  /// keeps growing: frames beyond this limit are not remembered.
   static constexpr std::size_t kMaxInFlight = 1000;
-  /// Lines that it says in all; whoever sends STATUS with ever new process numbers would fill the
-  /// disk that stderr goes to.
+  /// Limit of the lines reported in total: otherwise somebody sending STATUS with ever new pids
+  /// would fill the disk that stderr goes to.
   static constexpr int kMaxNotes = 1000;
 
   LockstepGate(const LockstepGateOptions& options, double now_s);
@@ -45,15 +47,15 @@ class LockstepGate {
 
   /// Whether the next frame may be published; gives up waits that took too long.
   bool MayPublish(double now_s);
-  /// Whether every process has done every frame that was published, or was given up.
+  /// Whether every process has either done every published frame or been given up.
   bool IsAllDone(double now_s);
 
   std::size_t num_remembered() const { return published_.size(); }
 
-  /// What people should know, a line each; given once.
+  /// What the user should know, one line each; each returned once.
   std::vector<std::string> TakeNotes();
-  /// A process, waited for or not, came (back) after the first frame: it has missed the
-  /// calibration. True once for each time.
+  /// A process, whether waited for or not, has started (again) after the first frame and has missed
+  /// the calibration. Returns true once per occurrence.
   bool TakeNewcomer();
 
  private:
@@ -61,11 +63,11 @@ class LockstepGate {
   struct Process {
     State state = State::kAbsent;
     std::int64_t pid = 0;
-    double heard_s = 0;     // STATUS or FRAME_DONE
-    double progress_s = 0;  // FRAME_DONE, or nothing to do
+    double heard_s = 0;     // last STATUS or FRAME_DONE
+    double progress_s = 0;  // last FRAME_DONE, or with nothing to do
     double reminded_s = 0;
-    bool is_idle = false;           // waits for frames
-    std::size_t num_in_flight = 0;  // oldest ones are dropped from the front of published_
+    bool is_idle = false;           // waiting for frames
+    std::size_t num_in_flight = 0;  // they are the last ones of published_
   };
   struct Published {
     std::int64_t session;
@@ -81,8 +83,8 @@ class LockstepGate {
   LockstepGateOptions options_;
   double start_s_;
   std::map<std::string, Process> processes_;
-  std::deque<Published> published_;  // in order; as many as somebody has in flight, at least one
-  std::map<std::string, std::int64_t> pids_;  // of every process that has said READY, by its name
+  std::deque<Published> published_;  // in order; as many as any process has in flight, at least one
+  std::map<std::string, std::int64_t> pids_;  // of every process that has reported READY, by name
   std::vector<std::string> notes_;
   int num_notes_ = 0;
   bool has_newcomer_ = false;

@@ -8,6 +8,7 @@
 #include "processes/node/check/input_check.h"
 #include "processes/node/live/lcm_transport.h"
 #include "processes/node/live/process_cli.h"
+#include "processes/node/live/process_log.h"
 #include "processes/node/live/process_usage.h"
 #include "processes/node/log/log_source.h"
 #include "processes/stereo_player/player_loop.h"
@@ -15,23 +16,23 @@
 
 namespace {
 
-void Check(const airdos::PlayerOptions& options) {
+void Check(const airdos::PlayerOptions& options, const airdos::ProcessLog& log) {
   if (options.check.is_off) return;
-  airdos::CheckBeforeRun(options.data, options.check.calibration, [](const std::string& line) {
-    std::cerr << "airdos-stereo-player: " << line << std::endl;
-  });
+  airdos::CheckBeforeRun(options.data, options.check.calibration,
+                         [&log](const std::string& line) { log.Relay(line); });
 }
 
 int Play(const airdos::PlayerOptions& options, const airdos::CommonArguments& common) {
   airdos::InstallStopSignals();
   cv::setNumThreads(1);
+  const airdos::ProcessLog log("airdos-stereo-player", airdos::ParseLogLevel(common.log_level));
   const airdos::OutputFiles outputs({options.write_log}, {{options.data}, common.force});
   const std::int64_t session = options.session.value_or(airdos::WallClock_us());
-  // Opened before anything is said, so that a wrong path is.
+  // Opened before anything is published, so that a wrong path is reported first.
   std::unique_ptr<airdos::FrameSource> first = airdos::OpenPlayerSource(options, session);
   if (!options.write_log.empty()) {
-    Check(options);
-    airdos::WriteLog(options.write_log, first.get(), &std::cerr);
+    Check(options, log);
+    airdos::WriteLog(options.write_log, first.get(), log);
     return 0;
   }
   const auto open = [&](int num_sessions) {
@@ -39,8 +40,8 @@ int Play(const airdos::PlayerOptions& options, const airdos::CommonArguments& co
                              : airdos::OpenPlayerSource(options, session + num_sessions);
   };
   airdos::LcmTransport transport(common.lcm_url);
-  Check(options);
-  airdos::PlayerLoop loop(options, open, &transport, &std::cerr);
+  Check(options, log);
+  airdos::PlayerLoop loop(options, open, &transport, &log, airdos::NotifySocketOfEnvironment());
   std::cout << "airdos-stereo-player READY version " << airdos::kVersion << " url "
             << common.lcm_url << " config " << common.config_file << std::endl;
   loop.Run();

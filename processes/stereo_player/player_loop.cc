@@ -20,12 +20,12 @@ namespace {
 
 constexpr int kPollTimeout_ms = 50;
 constexpr int kMaxJumpsSaid = 10;
-constexpr int kMaxDrained = 1000;  // messages that are taken in at once
-/// Messages go out no faster than this: a burst of several frames overflows the receivers' socket
-/// buffers (200 kB on a stock kernel) before their threads run.
+constexpr int kMaxDrained = 1000;  // messages received in one go
+/// Limit of the sending rate: a burst of several frames overflows the receivers' socket buffers
+/// (200 kB with a stock kernel) before their threads run.
 constexpr double kMaxBytesPerSecond = 30e6;
 
-// The frame that the messages make up: that of the newest of them. Sources give no message without
+// The frame that the messages belong to: that of the newest one. Sources return no messages without
 // a header.
 Header HeaderOfFrame(const std::vector<Envelope>& messages) {
   Header newest;
@@ -63,34 +63,35 @@ std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std:
                                            options.image, options.check.calibration);
   }
   auto log = std::make_unique<LogSource>(options.data, options.first, last);
-  // Unless asked for, a log is played as it is: its sessions are part of what others made of it.
+  // Unless requested otherwise, a log is played unchanged: its sessions also occur in recorded
+  // outputs.
   if (options.session || options.num_loops != 1) log->RenumberSessions(session);
   return log;
 }
 
-void WriteLog(const std::string& path, FrameSource* source, std::ostream* log) {
+void WriteLog(const std::string& path, FrameSource* source, const ProcessLog& log) {
   EventLogWriter writer(path);
   while (!StopRequested()) {
     const std::vector<Envelope> frame = source->NextFrame();
-    for (const std::string& note : source->TakeNotes()) {
-      *log << "airdos-stereo-player: " << note << std::endl;
-    }
+    for (const std::string& note : source->TakeNotes()) log.Relay(note);
     if (frame.empty()) break;
     const std::int64_t utime = HeaderOfFrame(frame).utime;
     for (const Envelope& message : frame)
       writer.Append(utime, message.channel, message.payload.data(), message.payload.size());
   }
   writer.Sync();
-  *log << "airdos-stereo-player: " << path << ": " << writer.num_events() << " messages, "
-       << writer.num_bytes() << " bytes" << std::endl;
+  log.Info(path + ": " + std::to_string(writer.num_events()) + " messages, " +
+           std::to_string(writer.num_bytes()) + " bytes");
 }
 
 PlayerLoop::PlayerLoop(const PlayerOptions& options, OpenSource open_source,
-                       LcmTransport* transport, std::ostream* log)
+                       LcmTransport* transport, const ProcessLog* log,
+                       const std::string& notify_socket)
     : options_(options),
       open_source_(std::move(open_source)),
       transport_(transport),
       log_(log),
+      service_(notify_socket, log),
       gate_(options.gate, SteadyClock_s()) {}
 
 void PlayerLoop::Run() {
@@ -102,6 +103,7 @@ void PlayerLoop::Run() {
                         HandlerOf<frame_done_t>([this](const frame_done_t& done) {
                           gate_.OnFrameDone(done, SteadyClock_s());
                         }));
+  TellService();
   const double start_s = SteadyClock_s();
   const int num_loops = options_.is_one_session ? 1 : options_.num_loops;
   for (int loop = 0; loop < num_loops || num_loops == 0; ++loop) {
@@ -112,8 +114,10 @@ void PlayerLoop::Run() {
   std::ostringstream line;
   line.precision(3);
   line << "published " << num_published_ << " frames in " << SteadyClock_s() - start_s << " s";
-  if (num_not_published_ > 0) line << ", the network refused " << num_not_published_ << " messages";
-  Say(line.str());
+  if (num_not_published_ > 0)
+    line << ", the network rejected " << num_not_published_ << " messages";
+  log_->Info(line.str());
+  service_.TellStopping(line.str());
 }
 
 void PlayerLoop::PlayOnce(FrameSource* source) {
@@ -140,16 +144,16 @@ void PlayerLoop::WaitUntilMayPublish() {
 
 void PlayerLoop::WaitForTime(const Header& header) {
   if (!pace_) pace_ = {SteadyClock_s(), header.utime};
-  // Floating point: the difference of two damaged times may not fit into an integer.
+  // In floating point: the difference of two damaged times may not fit into an integer.
   double gap_s = 1e-6 * (static_cast<double>(header.utime) - static_cast<double>(pace_->second));
   if (gap_s < 0 || gap_s > kMaxGap_s) {
     if (++num_jumps_ <= kMaxJumpsSaid) {
       std::ostringstream line;
       line.precision(3);
       line << "capture time jumps by " << gap_s << " s at image " << header.seq
-           << ": going on without a wait";
-      if (num_jumps_ == kMaxJumpsSaid) line << " (further jumps are not said)";
-      Say(line.str());
+           << ": continuing without waiting";
+      if (num_jumps_ == kMaxJumpsSaid) line << " (further jumps are not reported)";
+      log_->Warning(line.str());
     }
     gap_s = 0;
   }
@@ -166,6 +170,7 @@ void PlayerLoop::WaitUntilAllDone() {
 }
 
 void PlayerLoop::Listen(int timeout_ms) {
+  TellService();
   if (transport_->Poll(timeout_ms)) {
     // Bounded: a flood of STATUS must not keep the player from playing.
     for (int i = 0; i < kMaxDrained && !StopRequested() && transport_->Poll(0); ++i) {
@@ -180,28 +185,29 @@ void PlayerLoop::PublishFrame(const std::vector<Envelope>& messages, const Heade
     if (message.channel == channel::kCalibration) calibration_ = message;
     Publish(message);
   }
+  TellService();
   gate_.OnPublished(header.session, header.seq, SteadyClock_s());
   ++num_published_;
   if (options_.say_every > 0 && num_published_ % options_.say_every == 0)
-    Say(std::to_string(num_published_) + " frames published");
+    log_->Info(std::to_string(num_published_) + " frames published");
 }
 
 void PlayerLoop::Publish(const Envelope& message) {
   if (!transport_->Publish(message.channel, message.payload.data(), message.payload.size())) {
-    if (num_not_published_++ == 0) Say("cannot publish on " + message.channel);
+    if (num_not_published_++ == 0) log_->Error("cannot publish on " + message.channel);
   }
   std::this_thread::sleep_for(std::chrono::duration<double>(
       static_cast<double>(message.payload.size()) / kMaxBytesPerSecond));
 }
 
-void PlayerLoop::SayNotes(FrameSource* source) {
-  for (const std::string& note : gate_.TakeNotes()) Say(note);
-  if (source == nullptr) return;
-  for (const std::string& note : source->TakeNotes()) Say(note);
+void PlayerLoop::TellService() {
+  service_.TellWhenDue(SteadyClock_s(), std::to_string(num_published_) + " frames published");
 }
 
-void PlayerLoop::Say(const std::string& line) {
-  *log_ << "airdos-stereo-player: " << line << std::endl;
+void PlayerLoop::SayNotes(FrameSource* source) {
+  for (const std::string& note : gate_.TakeNotes()) log_->Relay(note);
+  if (source == nullptr) return;
+  for (const std::string& note : source->TakeNotes()) log_->Relay(note);
 }
 
 }  // namespace airdos

@@ -1,41 +1,32 @@
 #include "processes/stereo_player/player_options.h"
 
-#include <sstream>
-#include <vector>
-
+#include "common/config/option_pages.h"
 #include "common/util/error.h"
+#include "common/util/words.h"
 
 namespace airdos {
-namespace {
 
-std::vector<std::string> SplitAtCommas(const std::string& text) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) {
-    if (!part.empty()) parts.push_back(part);
-  }
-  return parts;
+OptionTable TableOf(PlayerOptions* options) {
+  OptionTable table(
+      "stereo_player",
+      "Defaults of airdos-stereo-player; a command-line option wins over the value here.");
+  table.AddSection("lockstep");
+  table.Add("lockstep.wait_for", &options->gate.wait_for,
+            "processes that must have said READY and that must keep up, by their name in STATUS; "
+            "separated by commas, empty: none");
+  table.Add("lockstep.frames_in_flight", &options->gate.frames_in_flight, {1, 1000}, "frames",
+            "at most this many on their way at once; 2 or more lets the processes overlap");
+  table.AddSection("image");
+  table.Add("image.max_image_bytes", &options->image.max_image_bytes, {1000, 100000000}, "bytes",
+            "largest image file in a message; above about 128 kB receivers with the system's "
+            "default buffers lose messages");
+  table.Add("image.jpeg_qualities", &options->image.jpeg_qualities, {1, 100}, "1..100",
+            "JPEG qualities, tried in this order until an image fits");
+  return table;
 }
-
-std::vector<int> ToQualities(const std::string& text) {
-  std::vector<int> qualities;
-  for (const std::string& part : SplitAtCommas(text)) {
-    std::istringstream stream(part);
-    int quality = 0;
-    if (!(stream >> quality) || !stream.eof() || quality < 1 || quality > 100) {
-      throw InputError("image.jpeg_qualities with value '" + text +
-                       "': must be whole numbers of 1 to 100, separated by commas");
-    }
-    qualities.push_back(quality);
-  }
-  if (qualities.empty()) throw InputError("image.jpeg_qualities: must not be empty");
-  return qualities;
-}
-
-}  // namespace
 
 PlayerArguments::PlayerArguments(CLI::App* app) : input_(app) {
-  AddCommonOptions("stereo_player", app, &common_);
+  AddCommonOptions(PagesOf<PlayerOptions>(), app, &common_);
   app->add_option("--first", options_.first, "First frame")->check(CLI::NonNegativeNumber);
   app->add_option("--last", options_.last, "Last frame, included")->check(CLI::NonNegativeNumber);
   app->add_option("--session", options_.session,
@@ -80,15 +71,9 @@ PlayerOptions PlayerArguments::Resolve() const {
                            : encoding_ == "jpeg" ? Encoding::kJpeg
                                                  : Encoding::kPng;
   ConfigReader config = ReadConfig(common_);
-  std::string wait_for, qualities;
-  config.Read("lockstep.wait_for", &wait_for);
-  config.Read("lockstep.frames_in_flight", &options.gate.frames_in_flight, 1, 1000);
-  config.Read("image.max_image_bytes", &options.image.max_image_bytes, 1000, 100000000);
-  config.Read("image.jpeg_qualities", &qualities);
+  TableOf(&options).Read(&config);
   FinishConfig(config, common_);
-  options.image.jpeg_qualities = ToQualities(qualities);
-  if (wait_for_) wait_for = *wait_for_ == "none" ? "" : *wait_for_;
-  options.gate.wait_for = SplitAtCommas(wait_for);
+  if (wait_for_) options.gate.wait_for = SplitAtCommas(*wait_for_ == "none" ? "" : *wait_for_);
   if (frames_in_flight_) options.gate.frames_in_flight = *frames_in_flight_;
   return options;
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "common/config/option_table.h"
 #include "processes/node/check/input_check.h"
 #include "processes/node/live/process_cli.h"
 #include "processes/stereo_player/image_packer.h"
@@ -27,10 +28,13 @@ struct PlayerOptions {
   PlayerPace pace = PlayerPace::kLockstep;
   double rate = 1;        ///< realtime: capture time that passes in a second
   std::string write_log;  ///< file to write instead of publishing
-  LockstepGateOptions gate;
+  LockstepGateOptions gate{{"airdos-optimizer", "airdos-map-recorder"}};
   ImagePackerOptions image;
   InputCheckOptions check;
 };
+
+/// launch_scripts/config/stereo_player.yaml: those that are not only on the command line.
+OptionTable TableOf(PlayerOptions* options);
 
 /// The command line, and where it says nothing the configuration file.
 class PlayerArguments {

@@ -10,6 +10,7 @@
 #include "common/util/error.h"
 #include "processes/node/message/channels.h"
 #include "processes/node/message/conversions.h"
+#include "processes/node/message/header.h"
 #include "processes/node/message/keypoint_messages.h"
 
 namespace airdos {
@@ -17,17 +18,8 @@ namespace {
 
 constexpr std::int64_t kCalibrationPeriod_us = 1000000;
 
-template <class Message>
-Message MessageOf(const Header& header) {
-  Message message = {};
-  message.utime = header.utime;
-  message.seq = header.seq;
-  message.session = header.session;
-  return message;
-}
-
-/// Throws where a receiver would reject the message: the data set is to blame, not the network.
-/// `file` is what the message was made from, or empty.
+/// Throws if a receiver would reject the message: the data set is at fault, not the network. `file`
+/// is what the message was made from, or empty.
 template <class Message>
 Envelope Pack(const std::string& channel, const Message& message, const std::string& file) {
   const std::string reason = Validate(message);
@@ -49,7 +41,7 @@ Envelope PackKeypoints(const std::string& channel, const Header& header, Keypoin
     for (const Keypoint& keypoint : person) {
       u_px.push_back(keypoint.u_px);
       v_px.push_back(keypoint.v_px);
-      // Detectors give scores slightly above 1.
+      // Some detectors give scores slightly above 1.
       confidence.push_back(std::min(1.0F, std::max(0.0F, keypoint.confidence)));
     }
     message.u_px.push_back(u_px);

@@ -14,8 +14,8 @@
 
 namespace airdos {
 
-/// Turns a recorded sequence into messages: of each frame, one on every channel (empty where the
-/// data set has nothing), and the calibration before the first frame and then once a second of
+/// Converts a recorded sequence to messages: for each frame, one on every channel (empty if the
+/// data set has nothing), and the calibration before the first frame and then once per second of
 /// capture time. The image number is the index in the data set. No clock, no LCM; the same frames
 /// give the same bytes.
 class StereoPlayer {
@@ -24,27 +24,28 @@ class StereoPlayer {
   StereoPlayer(const StereoSequence* sequence, std::int64_t session,
                const ImagePackerOptions& options);
 
+  /// The messages of one frame.
   struct Frame {
     Header header;
     std::vector<Envelope> messages;
   };
   /// Throws InputError if a file of the frame cannot be used.
   Frame Load(std::size_t index);
-  /// The calibration again, for a process that came later.
+  /// The calibration again, for a process that started later.
   Envelope Calibration(const Header& header) const;
 
   std::vector<std::string> TakeNotes() { return packer_.TakeNotes(); }
 
  private:
   bool IsCalibrationDue(std::int64_t utime);
-  /// The first 16-bit picture has the range of all of them looked up.
+  /// On the first 16-bit picture, determines the range of all of them.
   void SetRangeFor(const std::vector<std::uint8_t>& file);
 
   const StereoSequence* sequence_;
   std::int64_t session_;
   ImagePacker packer_;
   bool is_range_known_ = false;
-  std::optional<std::int64_t> calibration_utime_;  // when it was given last
+  std::optional<std::int64_t> calibration_utime_;  // when it was last published
 };
 
 }  // namespace airdos

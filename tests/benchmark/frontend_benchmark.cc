@@ -18,6 +18,7 @@
 
 #include "common/dataset/stereo_sequence.h"
 #include "common/features/visual_odometry.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
@@ -95,12 +96,6 @@ double ProcessorTime_s() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Of the left or the right image, whichever has more.
 int NumFeatures(const StereoImagePair& images, const FeatureExtractorOptions& options) {
   const FeatureExtractor extractor(options);
@@ -146,9 +141,9 @@ void BM_FrontEnd(benchmark::State& state, const std::string& name) {
     state.SetIterationTime(sum_s / static_cast<double>(sequence.frames.size() - kNumWarmUpFrames));
   }
   const auto num_frames = static_cast<double>(ours_ms.size());
-  state.counters["front_end_ms"] = Median(ours_ms);
-  state.counters["naive_ms"] = Median(naive_ms);
-  state.counters["ratio"] = Median(ours_ms) / Median(naive_ms);
+  state.counters["front_end_ms"] = Quantile(ours_ms, 0.5);
+  state.counters["naive_ms"] = Quantile(naive_ms, 0.5);
+  state.counters["ratio"] = Quantile(ours_ms, 0.5) / Quantile(naive_ms, 0.5);
   state.counters["features"] = num_ours / num_frames;
   state.counters["naive_features"] = num_naive / num_frames;
 }

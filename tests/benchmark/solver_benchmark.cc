@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "common/util/quantile.h"
 #include "tests/support/ba_problem.h"
 #include "tests/support/people_street.h"
 
@@ -29,12 +30,6 @@ double ProcessorMs() {
   timespec now;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
 }
 
 std::vector<std::string> ProblemFiles(const std::string& kind) {
@@ -87,13 +82,13 @@ void PaperProblem(benchmark::State& state, const std::string& kind, const Varian
   std::vector<double> solve_ms, iteration_ms;
   for (std::size_t f = 0; f < files.size(); ++f) {
     if (ms[f].empty()) continue;
-    solve_ms.push_back(Median(ms[f]));
+    solve_ms.push_back(Quantile(ms[f], 0.5));
     iteration_ms.push_back(solve_ms.back() / iterations[f]);
   }
-  state.counters["median_ms"] = Median(solve_ms);
-  state.counters["ms_per_iteration"] = Median(iteration_ms);
-  state.counters["iterations"] = Median(iterations);
-  state.counters["cost"] = Median(costs);
+  state.counters["median_ms"] = Quantile(solve_ms, 0.5);
+  state.counters["ms_per_iteration"] = Quantile(iteration_ms, 0.5);
+  state.counters["iterations"] = Quantile(iterations, 0.5);
+  state.counters["cost"] = Quantile(costs, 0.5);
 }
 
 void Scaling(benchmark::State& state, int num_people, int window, BundleSolver solver,
@@ -108,7 +103,7 @@ void Scaling(benchmark::State& state, int num_people, int window, BundleSolver s
   if (is_warm) {
     BundleOptions until_converged = options;
     until_converged.max_iterations = 50;
-    until_converged.max_iterations_after_elimination = 0;
+    until_converged.max_iterations_after_rejection = 0;
     start = SlideWindow(until_converged, street);
   }
   std::vector<double> memory;
@@ -124,8 +119,8 @@ void Scaling(benchmark::State& state, int num_people, int window, BundleSolver s
     iterations = summary.num_iterations;
     cost = summary.final_cost;
   }
-  state.counters["median_ms"] = Median(ms);
-  state.counters["ms_per_iteration"] = Median(ms) / std::max(iterations, 1.0);
+  state.counters["median_ms"] = Quantile(ms, 0.5);
+  state.counters["ms_per_iteration"] = Quantile(ms, 0.5) / std::max(iterations, 1.0);
   state.counters["iterations"] = iterations;
   state.counters["cost"] = cost;
 }

@@ -2,7 +2,6 @@
 // (tests/dataset/bands.txt).
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "common/config/config_reader.h"
+#include "common/util/quantile.h"
 #include "processes/human_tracker/human_tracker_node.h"
 #include "tests/support/bands.h"
 #include "tests/support/human_scoring.h"
@@ -37,9 +37,6 @@ HumanTrackerOptions Options() {
 double Percent(int part, int whole) { return 100.0 * part / whole; }
 
 Figures FiguresOf(const HumanScore& score) {
-  std::vector<double> bias_m = score.depth_bias_m;
-  std::nth_element(bias_m.begin(), bias_m.begin() + static_cast<long>(bias_m.size() / 2),
-                   bias_m.end());
   return {{"pairs_found_percent", 100 * score.PairRecall()},
           {"pairs_wrong_percent", 100 * (1 - score.PairPrecision())},
           {"people_found_percent", Percent(score.num_visible_found, score.num_visible)},
@@ -48,7 +45,7 @@ Figures FiguresOf(const HumanScore& score) {
           {"joints", score.num_joints},
           {"joint_error_median_m", score.MedianJointError()},
           {"joint_error_mean_m", score.MeanJointError()},
-          {"depth_bias_m", bias_m.empty() ? 0 : bias_m[bias_m.size() / 2]},
+          {"depth_bias_m", Quantile(score.depth_bias_m, 0.5)},
           {"normalised_error", score.sum_normalised_squared / (3 * score.num_normalised)},
           {"switches", score.identity.num_switches},
           {"idf1", score.identity.idf1}};

@@ -21,8 +21,9 @@ Se3 Pose(double x) { return {ExpSo3({0.1, -0.2, 0.3}), {x, -0.5 * x, 0.25 * x}};
 BundleOptions Options() {
   BundleOptions options;
   options.max_iterations = 1;
-  options.max_iterations_after_elimination = 0;
-  options.huber_static = options.huber_dynamic = kNone;
+  options.max_iterations_after_rejection = 0;
+  options.huber_static_sigmas = options.huber_dynamic_sigmas = kNone;
+  options.person_speed_m_s = 0;
   return options;
 }
 
@@ -52,14 +53,14 @@ TEST(BundleCosts, ALandmark) {
   BundleProblem problem = OneLandmark();
   BundleOptions options = Options();
   EXPECT_NEAR(CostOf(options, problem), 28, 1e-9);  // (36 + 16 + 4) / 2
-  options.huber_static = 2;
-  options.huber_dynamic = 0.1;
+  options.huber_static_sigmas = 2;
+  options.huber_dynamic_sigmas = 0.1;
   EXPECT_NEAR(CostOf(options, problem), Huber(56, 2), 1e-9);
   problem.observations[0].has_right = false;
   EXPECT_NEAR(CostOf(Options(), problem), 26, 1e-9);
   problem.observations[0].point = {Eigen::Vector3d(1.1, -0.3, 5.8), 0.05};
   EXPECT_NEAR(CostOf(Options(), problem), 18, 1e-9);  // (4 + 16 + 16) / 2
-  problem.observations[0].is_eliminated = true;
+  problem.observations[0].is_rejected = true;
   EXPECT_NEAR(CostOf(Options(), problem), 0, 1e-12);
 }
 
@@ -120,10 +121,10 @@ TEST(BundleCosts, AJointWithItsWholeCovariance) {
   const double squared = error.dot(joint.covariance_px2.inverse() * error);
   EXPECT_NEAR(CostOf(Options(), problem), 0.5 * squared, 1e-9);
   BundleOptions options = Options();
-  options.huber_static = 0.1;
-  options.huber_dynamic = 1;
+  options.huber_static_sigmas = 0.1;
+  options.huber_dynamic_sigmas = 1;
   EXPECT_NEAR(CostOf(options, problem), Huber(squared, 1), 1e-9);
-  joint.is_eliminated = true;
+  joint.is_rejected = true;
   EXPECT_NEAR(CostOf(options, problem), 0, 1e-12);
 }
 
@@ -149,8 +150,8 @@ TEST(BundleCosts, ASegmentAndWhatIsKnownOfIt) {
   human.known_length_m[9] = 0.50;
   human.known_length_sigma_m[9] = 0.03;
   EXPECT_NEAR(CostOf(options, problem), 2 + 0.18, 1e-9);  // 0.03 / 0.05
-  options.huber_dynamic = 0.5;                            // not on what is known
-  options.huber_smoothness = 0.1;
+  options.huber_dynamic_sigmas = 0.5;                     // not on what is known
+  options.huber_smoothness_sigmas = 0.1;
   EXPECT_NEAR(CostOf(options, problem), Huber(4, 0.5) + 0.18, 1e-9);
   BundleProblem copy = problem;
   const BundleSummary summary = SolveBundle(options, &copy);
@@ -196,8 +197,8 @@ TEST(BundleCosts, AVelocityAFramePair) {
   BundleOptions options = WalkerOptions();
   EXPECT_NEAR(CostOf(options, problem), kMotionSquared + 0.5 * (kSpeedSquared + kChangeSquared),
               1e-9);
-  options.huber_dynamic = 1;
-  options.huber_smoothness = 0.5;
+  options.huber_dynamic_sigmas = 1;
+  options.huber_smoothness_sigmas = 0.5;
   EXPECT_NEAR(CostOf(options, problem),
               2 * Huber(kMotionSquared, 1) + Huber(kSpeedSquared, 0.5) + Huber(kChangeSquared, 0.5),
               1e-9);
@@ -261,7 +262,7 @@ TEST(BundleCosts, NoMotionLeadsAcrossAGapOrABreak) {
   problem.frames[3].time_s = 1;
   problem.humans[0].joints[2].p_W.x() = 0.8;
   problem.humans[0].joints[3].p_W.x() = 1;
-  for (BundleProblem::JointState& joint : problem.humans[0].joints) joint.is_eliminated = true;
+  for (BundleProblem::JointState& joint : problem.humans[0].joints) joint.is_rejected = true;
   EXPECT_NEAR(CostOf(options, problem), 0.125, 1e-9) << "one velocity before and after a gap";
   options.motion_form = MotionForm::kVelocity;
   EXPECT_NEAR(CostOf(options, problem), 0.25, 1e-9);
@@ -329,14 +330,14 @@ TEST(BundleCosts, AMotionAPartChangesLittle) {
   for (auto& joint : joints) {
     if (joint.joint != kRightShoulder) continue;
     joint.p_W = joints[static_cast<std::size_t>(2 * joint.frame)].p_W + Eigen::Vector3d(0, 0, 1);
-    joint.is_eliminated = true;
+    joint.is_rejected = true;
   }
   BundleOptions options = WalkerOptions();
   options.motion_form = MotionForm::kSe3Smooth;
   // (1.5, 0.5) - (1.2, 0) m/s over 0.15 s: 0.34 / 0.09.
   EXPECT_NEAR(CostOf(options, problem), 0.5 * 0.34 / 0.09, 1e-9);
-  options.huber_smoothness = 0.5;
-  options.huber_dynamic = 0.1;
+  options.huber_smoothness_sigmas = 0.5;
+  options.huber_dynamic_sigmas = 0.1;
   EXPECT_NEAR(CostOf(options, problem), Huber(0.34 / 0.09, 0.5), 1e-9);
   problem.humans[0].motion_noise = MotionNoise{0.04, 4, 1};
   EXPECT_NEAR(CostOf(options, problem), Huber(0.34 / 0.36, 0.5), 1e-9);

@@ -36,7 +36,7 @@ BundleProblem MakeProblem(const SyntheticScene& scene, bool with_people) {
 BundleOptions Thorough() {
   BundleOptions options;
   options.max_iterations = 100;
-  options.max_iterations_after_elimination = 100;
+  options.max_iterations_after_rejection = 100;
   options.function_tolerance = 1e-12;
   return options;
 }
@@ -92,7 +92,7 @@ TEST(BundleTest, WithoutMotionPeopleLeaveTheCameraAlone) {
   // Shifting a camera together with its people changes no reprojection and no rigidity residual.
   const SyntheticScene scene = MakeSyntheticScene(Walkers(20, 4));
   BundleOptions options = Thorough();
-  options.max_iterations_after_elimination = 0;
+  options.max_iterations_after_rejection = 0;
   BundleProblem static_only = MakeProblem(scene, false);
   SolveBundle(options, &static_only);
   BundleProblem rigid = MakeProblem(scene, true);
@@ -175,23 +175,23 @@ TEST(BundleTest, EveryMotionFormSolvesAndReportsMotions) {
 
 // The neighbours and the rest of the body hold the joint where it is, so that its own measurement
 // goes, and nothing else.
-TEST(BundleTest, AJointFarOffIsEliminated) {
+TEST(BundleTest, AJointFarOffIsRejected) {
   SyntheticSceneOptions scene_options = Walkers(100, 2);
   scene_options.joint_sigma_px = 0.2;
   const SyntheticScene scene = MakeSyntheticScene(scene_options);
   BundleProblem problem = MakeProblem(scene, true);
   BundleOptions options;
   options.use_motion = false;
-  options.max_iterations = options.max_iterations_after_elimination = 50;
+  options.max_iterations = options.max_iterations_after_rejection = 50;
   BundleProblem right = problem;
   const BundleSummary before = SolveBundle(options, &right);
   BundleProblem::JointState& wrong = problem.humans[0].joints[3];
   wrong.uvu_px += Eigen::Vector3d(0, 60, 0);  // along the image, where the segments say most
   const BundleSummary after = SolveBundle(options, &problem);
-  EXPECT_FALSE(right.humans[0].joints[3].is_eliminated);
-  EXPECT_TRUE(wrong.is_eliminated);
-  EXPECT_EQ(after.num_reprojection_eliminated, before.num_reprojection_eliminated + 1);
-  EXPECT_EQ(problem.humans[1].num_rigidity_eliminated, right.humans[1].num_rigidity_eliminated);
+  EXPECT_FALSE(right.humans[0].joints[3].is_rejected);
+  EXPECT_TRUE(wrong.is_rejected);
+  EXPECT_EQ(after.num_reprojection_rejected, before.num_reprojection_rejected + 1);
+  EXPECT_EQ(problem.humans[1].num_rigidity_rejected, right.humans[1].num_rigidity_rejected);
 }
 
 TEST(BundleTest, CovarianceMatchesTheScatterOfTheErrors) {
@@ -207,8 +207,8 @@ TEST(BundleTest, CovarianceMatchesTheScatterOfTheErrors) {
     const SyntheticScene scene = MakeSyntheticScene(scene_options);
     BundleProblem problem = MakeProblem(scene, false);
     BundleOptions options = Thorough();
-    options.huber_static = 1e6;
-    options.max_iterations_after_elimination = 0;
+    options.huber_static_sigmas = 1e6;
+    options.max_iterations_after_rejection = 0;
     const BundleSummary summary = SolveBundle(options, &problem);
     ASSERT_TRUE(summary.newest_covariance);
     const Vector6d error = Boxminus(problem.frames.back().T_W_C, scene.T_W_C.back());
@@ -270,8 +270,8 @@ TEST(BundleTest, ARigidObjectsMotionOverItsTrackPlacesTheCamera) {
   const Se3 step_W{ExpSo3({0, 0.05, 0.01}), {0.05, 0, 0.1}};
   BundleProblem problem = DrivingBox(step_W, &truth);
   BundleOptions options = Thorough();
-  options.huber_dynamic = 1e6;
-  options.max_iterations_after_elimination = 0;
+  options.huber_dynamic_sigmas = 1e6;
+  options.max_iterations_after_rejection = 0;
   const BundleSummary summary = SolveBundle(options, &problem);
   EXPECT_EQ(summary.num_motion, 5 * 8);
   EXPECT_LT(summary.final_cost, 1e-10);
@@ -311,7 +311,7 @@ TEST(BundleTest, DegenerateProblemsDoNotCrash) {
   BundleProblem empty = MakeProblem(scene, false);
   empty.observations.clear();
   empty.landmarks.clear();
-  EXPECT_EQ(SolveBundle(BundleOptions(), &empty).num_reprojection_eliminated, 0);
+  EXPECT_EQ(SolveBundle(BundleOptions(), &empty).num_reprojection_rejected, 0);
 
   BundleProblem one_point = MakeProblem(scene, false);
   one_point.landmarks.resize(1);

@@ -93,8 +93,8 @@ TEST(HumanTrackerRules, OneImageGivesLessRoom) {
   const auto step_m = [](double cost) { return std::sqrt(cost - 1) * 0.15 * kPersonHeightM; };
   for (const bool has_right : {true, false}) {
     HumanTrackerOptions options;
-    options.gate = 9;
-    options.left_only_gate = 5;
+    options.max_squared_sigmas = 9;
+    options.left_only_max_squared_sigmas = 5;
     options.use_shift_vote = false;
     const double gate = has_right ? 9 : 5;
     for (const double cost : {gate - 0.2, gate + 0.2}) {
@@ -113,10 +113,11 @@ TEST(HumanTrackerRules, OneImageGivesLessRoom) {
 
 /// The sides of the third frame's left detection are exchanged; where the tracker has the right
 /// hip.
-double RightHipX(double min_swap_gain, double min_swap_gain_doubtful) {
+double RightHipX(double min_swap_gain_squared_sigmas,
+                 double min_doubtful_swap_gain_squared_sigmas) {
   HumanTrackerOptions options;
-  options.min_swap_gain = min_swap_gain;
-  options.min_swap_gain_doubtful = min_swap_gain_doubtful;
+  options.min_swap_gain_squared_sigmas = min_swap_gain_squared_sigmas;
+  options.min_doubtful_swap_gain_squared_sigmas = min_doubtful_swap_gain_squared_sigmas;
   HumanTracker tracker(options);
   for (int i = 0; i < 2; ++i) tracker.Process(kTestCamera, Frame(kStanding));
   PeopleFrame frame = Frame(kStanding);
@@ -221,14 +222,14 @@ TEST(HumanTrackerRules, SidesOfOneImageAreExchangedForMuch) {
   left_only.left[0] = SwapSides(left_only.left[0], SideSwap::kAll);
   const PeopleFrame seen = Frame(kStanding);
   HumanTrackerOptions options;
-  options.min_swap_gain = 20;
-  options.min_swap_gain_doubtful = 1e6;
+  options.min_swap_gain_squared_sigmas = 20;
+  options.min_doubtful_swap_gain_squared_sigmas = 1e6;
   auto tracked = BeforeTheWall(options, {seen, seen, left_only});
   ASSERT_EQ(tracked[2].humans.size(), 1U);
   ASSERT_TRUE(tracked[2].humans[0].joints[kRightHip]);
   EXPECT_NEAR(tracked[2].humans[0].joints[kRightHip]->p_C.x(), kStanding[kRightHip].x(), 0.05);
-  options.min_swap_gain = 1e6;
-  options.min_swap_gain_doubtful = 1;
+  options.min_swap_gain_squared_sigmas = 1e6;
+  options.min_doubtful_swap_gain_squared_sigmas = 1;
   tracked = BeforeTheWall(options, {seen, seen, left_only});
   ASSERT_TRUE(tracked[2].humans.at(0).joints[kRightHip]);
   EXPECT_NEAR(tracked[2].humans[0].joints[kRightHip]->p_C.x(), kStanding[kLeftHip].x(), 0.05);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -80,7 +81,7 @@ TEST(HumanTracks, AJointComesIntoTheProblemAsItWasSeen) {
   EXPECT_LT((knee.p_W - Pose(6) * Eigen::Vector3d(0.6, 0.6, 4)).norm(), 1e-9);
   EXPECT_LT((knee.uvu_px - Eigen::Vector3d(385, 320.5, 347.5)).norm(), 1e-9);
   EXPECT_EQ(knee.covariance_px2, CovariancePx2());
-  EXPECT_FALSE(knee.is_eliminated);
+  EXPECT_FALSE(knee.is_rejected);
   EXPECT_FALSE(knee.point);
   const BundleProblem::JointState& earlier = problem.humans[0].joints[2];
   EXPECT_EQ(earlier.frame, 2);
@@ -214,14 +215,14 @@ TEST(HumanTracks, TheResultIsKeptRelativeToItsCamera) {
             1e-9);
 }
 
-TEST(HumanTracks, AnEliminatedOrImpossibleJointStartsFromItsMeasurementAgain) {
+TEST(HumanTracks, ARejectedOrImpossibleJointStartsFromItsMeasurementAgain) {
   HumanTracksOptions options = Small();
   options.max_depth_m = 10;
   HumanTracks tracks(options);
   tracks.AddFrame(kCamera, Frame(0, {Person(1, 0.4), Person(2, 0.4)}));
   BundleProblem problem = ProblemOf(0, 0, tracks);
   std::vector<BundleProblem::JointState>& joints = problem.humans[0].joints;
-  joints[0].is_eliminated = true;
+  joints[0].is_rejected = true;
   joints[0].p_W = Pose(0) * Eigen::Vector3d(1, 1, 5);
   joints[1].p_W = Pose(0) * Eigen::Vector3d(1, 1, -0.001);
   joints[2].p_W = Pose(0) * Eigen::Vector3d(1, 1, 19.9);
@@ -236,13 +237,13 @@ TEST(HumanTracks, AnEliminatedOrImpossibleJointStartsFromItsMeasurementAgain) {
   EXPECT_EQ(states[1].joints[0].joint, kRightKnee);
   problem = ProblemOf(0, 0, tracks);
   ASSERT_EQ(problem.humans[0].joints.size(), 3U);
-  EXPECT_FALSE(problem.humans[0].joints[0].is_eliminated) << "it may come back";
+  EXPECT_FALSE(problem.humans[0].joints[0].is_rejected) << "it may come back";
   EXPECT_LT((problem.humans[0].joints[0].p_W - Pose(0) * Eigen::Vector3d(0.5, -0.4, 4)).norm(),
             1e-9);
   EXPECT_LT((problem.humans[0].joints[1].p_W - Pose(0) * Eigen::Vector3d(0.6, 0.1, 4)).norm(),
             1e-9);
   EXPECT_LT((problem.humans[0].joints[2].p_W - Pose(0) * Eigen::Vector3d(1, 1, 19.9)).norm(), 1e-9);
-  tracks.Absorb(problem);  // now none of them is eliminated
+  tracks.Absorb(problem);  // now none of them is rejected
   EXPECT_EQ(tracks.Describe({0}, Se3(), problem)[0].joints.size(), 3U);
 }
 

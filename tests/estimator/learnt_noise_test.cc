@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -129,7 +130,7 @@ TEST(LearntNoise, HowFarPointsStrayFromTheBody) {
   EXPECT_NEAR(Learn(Options(), problem).motion_sigma_m / expected(false), 1, 0.01);
   problem.humans[0].track_breaks.clear();
   for (BundleProblem::JointState& joint : problem.humans[0].joints) {
-    if (joint.frame == 2 && joint.joint == kNeck) joint.is_eliminated = true;
+    if (joint.frame == 2 && joint.joint == kNeck) joint.is_rejected = true;
   }
   EXPECT_NEAR(Learn(Options(), problem).motion_sigma_m / expected(false), 1, 0.01);
   EXPECT_GT(std::abs(expected(true) / expected(false) - 1), 0.05);
@@ -332,6 +333,9 @@ TEST(TrackBreaks, ATrackBreaksWhereNobodyCanGo) {
   const double longer_m = std::sqrt(30 * (2 * R + 0.04 * (4 + 2 * 0.36)));
   EXPECT_TRUE(Breaks({0, 0.2, 0.3}, 1, 0.999 * longer_m).empty());
   EXPECT_EQ(Breaks({0, 0.2, 0.3}, 1, 1.001 * longer_m), std::set<int>{1});
+  // The shortest step is the usual one, not the last.
+  EXPECT_TRUE(Breaks({0, 0.1, 0.3}, 1, 0.999 * limit_m).empty());
+  EXPECT_EQ(Breaks({0, 0.1, 0.3}, 1, 1.001 * limit_m), std::set<int>{1});
 }
 
 TEST(TrackBreaks, JustAfterAGapItMayHaveBeenBefore) {

@@ -24,16 +24,16 @@ const StereoPair& Walk(int k) {
 Se3 Truth(int k) { return SwayingPath(0).inverse() * SwayingPath(k); }
 
 /// Three who walk, each at its own steady pace, measured to a few millimetres.
-std::vector<PersonMeasurement> People(int k) {
-  std::vector<PersonMeasurement> people;
+std::vector<HumanMeasurement> People(int k) {
+  std::vector<HumanMeasurement> people;
   const Eigen::Vector3d places_W[] = {{-1, 0, 4}, {1.2, 0.1, 5}, {0.2, -0.1, 6}};
   const Eigen::Vector3d velocities_W[] = {{0.6, 0, 0.2}, {0, 0, -0.4}, {-0.5, 0, 0.3}};
   for (int person = 0; person < 3; ++person) {
-    PersonMeasurement measurement{HumanId{person + 1}, {}};
+    HumanMeasurement measurement{HumanId{person + 1}, {}};
     for (const int joint : {0, 1, 2, 5, 8, 11}) {
       const Eigen::Vector3d offset(0.15 * (joint % 3 - 1), joint < 8 ? -0.5 : 0,
                                    0.05 * (joint % 2));
-      PersonMeasurement::Joint at;
+      HumanMeasurement::Joint at;
       at.joint = joint;
       at.p_C = Truth(k).inverse() * (places_W[person] + 0.1 * k * velocities_W[person] + offset);
       at.covariance_C = Eigen::Vector3d(1e-5, 2e-5, 4e-5).asDiagonal();
@@ -172,7 +172,7 @@ TEST(OdometryPeopleValues, PeopleMoveAlongWithTheWorld) {
 TEST(OdometryPeopleValues, AChanceAgreementOfAFewMovesNothing) {
   VisualOdometryOptions options;
   options.min_correlation = 0.3;
-  options.wide_max_hamming = options.narrow_max_hamming = 256;
+  options.wide_max_hamming_bits = options.narrow_max_hamming_bits = 256;
   VisualOdometry odometry(options);
   for (int k = 0; k < 8; ++k) odometry.Process(kCamera, Frame(k, false, false));
   Se3 before = Truth(7);

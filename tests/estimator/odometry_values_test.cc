@@ -243,9 +243,9 @@ TEST(OdometryValues, PeopleHaveNoSayWhereLandmarksAreFoundAgain) {
   for (int k = 0; k < 8; ++k) {
     StereoImagePair images = Frame(k);
     if (k == 5 || k == 6) images.mask = Blank(255);
-    PersonMeasurement person{HumanId{3}, {}};
+    HumanMeasurement person{HumanId{3}, {}};
     for (const int joint : {1, 2, 5, 8, 11}) {
-      PersonMeasurement::Joint at;
+      HumanMeasurement::Joint at;
       at.joint = joint;
       at.p_C = (SwayingPath(0).inverse() * SwayingPath(k)).inverse() *
                Eigen::Vector3d(0.1 * joint - 0.5, joint < 6 ? -0.4 : 0.1, 4);

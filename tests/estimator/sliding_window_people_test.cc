@@ -86,14 +86,14 @@ TEST(SlidingWindow, WhereTheStaticSceneIsStrongTheSummaryIsItsOwn) {
   scene.frames[5].features[3].uvu_px.x() += 40;
   scene.frames[5].humans[0].joints[3].uvu_px.x() += 40;
   SlidingWindowOptions options;
-  options.bundle.max_iterations = options.bundle.max_iterations_after_elimination = 30;
+  options.bundle.max_iterations = options.bundle.max_iterations_after_rejection = 30;
   const std::vector<FrameResult> with = RunAll(options, scene);
   options.bundle.use_people = false;
   const std::vector<FrameResult> without = RunAll(options, scene);
   const BundleSummary& both = with[5].estimate.summary;
   const BundleSummary& one = without[5].estimate.summary;
-  EXPECT_EQ(one.num_reprojection_eliminated, 1);
-  EXPECT_EQ(both.num_reprojection_eliminated, 2) << "the landmark and the joint";
+  EXPECT_EQ(one.num_reprojection_rejected, 1);
+  EXPECT_EQ(both.num_reprojection_rejected, 2) << "the landmark and the joint";
   EXPECT_GT(both.num_iterations, one.num_iterations);
   EXPECT_EQ(both.initial_cost, one.initial_cost);
   EXPECT_EQ(both.final_cost, one.final_cost);
@@ -101,7 +101,7 @@ TEST(SlidingWindow, WhereTheStaticSceneIsStrongTheSummaryIsItsOwn) {
   EXPECT_EQ(both.num_people, 3);
   // One step each: as many iterations again.
   options.bundle.max_iterations = 1;
-  options.bundle.max_iterations_after_elimination = 0;
+  options.bundle.max_iterations_after_rejection = 0;
   const int num_alone = RunAll(options, scene)[5].estimate.summary.num_iterations;
   options.bundle.use_people = true;
   EXPECT_EQ(RunAll(options, scene)[5].estimate.summary.num_iterations, 2 * num_alone);
@@ -158,7 +158,7 @@ TEST(SlidingWindow, PeopleDoNotMoveTheLandmarksOfAStrongScene) {
   SlidingWindowOptions options;
   options.learn_track_noise = false;
   options.camera_motion.use_acceleration = false;
-  options.bundle.eliminate_static = 1e9;  // all of them count
+  options.bundle.reject_static_sigmas = 1e9;  // all of them count
   options.trust.min_static_observations = 20;
   for (const int num_static : {20, 19}) {
     const SyntheticScene scene = TwoFrames(num_static);

@@ -91,7 +91,7 @@ TEST(SlidingWindow, ANewLandmarkStandsWhereItIsSeenFromThePrediction) {
 
 TEST(SlidingWindow, OdometryGoesOnFromWhereItsFrameIsKnownToBeNow) {
   SlidingWindowOptions options = StaticOnly();
-  options.bundle.huber_static = options.bundle.eliminate_static = 1e9;
+  options.bundle.huber_static_sigmas = options.bundle.reject_static_sigmas = 1e9;
   SlidingWindowOptimizer optimizer(options, kCamera);
   FrameInput input = At(0, 0, Pose(0));
   AddFeatures(Pose(0), 0, 9, 0.5, &input);
@@ -221,7 +221,7 @@ TEST(SlidingWindow, CountsWhatHoldsTheNewestFrame) {
   const FrameEstimate estimate = ThirdFrame(StaticOnly());
   EXPECT_EQ(estimate.num_static_landmarks, 10) << "seven were seen only once";
   EXPECT_EQ(estimate.num_static_observations, 9);
-  EXPECT_EQ(estimate.summary.num_reprojection_eliminated, 1);
+  EXPECT_EQ(estimate.summary.num_reprojection_rejected, 1);
   EXPECT_EQ(estimate.status, Status::kConverged);
   EXPECT_EQ(estimate.id.value, 2);
   EXPECT_LT(estimate.covariance.norm(), 0.1);
@@ -233,7 +233,7 @@ TEST(SlidingWindow, ItConvergedIfTheLastPassDid) {
   options.bundle.function_tolerance = 1e-4;
   options.bundle.max_iterations = 1;
   EXPECT_EQ(ThirdFrame(options).status, Status::kConverged) << "after the false one was out";
-  options.bundle.max_iterations_after_elimination = 0;
+  options.bundle.max_iterations_after_rejection = 0;
   EXPECT_EQ(ThirdFrame(options).status, Status::kNotConverged);
 }
 
@@ -296,7 +296,7 @@ TEST(SlidingWindow, ALandmarkIsAsCertainAsItsWorstDirection) {
 std::vector<std::map<std::int64_t, MapChanges::Landmark>> Published(double publish_moved_m) {
   SlidingWindowOptions options = StaticOnly();
   options.publish_moved_m = publish_moved_m;
-  options.bundle.huber_static = options.bundle.eliminate_static = 1e9;
+  options.bundle.huber_static_sigmas = options.bundle.reject_static_sigmas = 1e9;
   SlidingWindowOptimizer optimizer(options, kCamera);
   std::vector<std::map<std::int64_t, MapChanges::Landmark>> published;
   for (int i = 0; i < 3; ++i) {

@@ -74,9 +74,9 @@ std::vector<Setting> Settings() {
        [](R* r, B* b) {
          r->has_accelerations = true;
          r->has_known_lengths = true;
-         b->person_speed_m_s = 1;
-         b->huber_smoothness = 1;
+         b->huber_smoothness_sigmas = 1;
        }},
+      {"UnknownSpeed", [](R*, B* b) { b->person_speed_m_s = 0; }},
       {"NoLandmarks",
        [](R* r, B*) {
          r->num_landmarks = 0;
@@ -111,7 +111,7 @@ TEST_P(StructuredSolverTest, EndsWhereCeresEnds) {
     SCOPED_TRACE(seed);
     BundleOptions options;
     options.steps_by_track = seed == 2;
-    options.max_iterations = options.max_iterations_after_elimination = 300;
+    options.max_iterations = options.max_iterations_after_rejection = 300;
     options.function_tolerance = 1e-15;
     // Tighter rigidity converges in hundreds of steps where joints are far off, and rounding alone
     // then decides where a run without an end stands.
@@ -124,9 +124,9 @@ TEST_P(StructuredSolverTest, EndsWhereCeresEnds) {
     const BundleSummary ours = SolveBundle(options, &problem);
     EXPECT_NEAR(ours.initial_cost, ceres.initial_cost, 1e-9 * ceres.initial_cost);
     EXPECT_NEAR(ours.final_cost, ceres.final_cost, 1e-6 * ceres.final_cost + 1e-12);
-    EXPECT_EQ(ours.num_reprojection_eliminated, ceres.num_reprojection_eliminated);
-    EXPECT_EQ(ours.num_rigidity_eliminated, ceres.num_rigidity_eliminated);
-    EXPECT_EQ(ours.num_motion_eliminated, ceres.num_motion_eliminated);
+    EXPECT_EQ(ours.num_reprojection_rejected, ceres.num_reprojection_rejected);
+    EXPECT_EQ(ours.num_rigidity_rejected, ceres.num_rigidity_rejected);
+    EXPECT_EQ(ours.num_motion_rejected, ceres.num_motion_rejected);
     for (std::size_t i = 0; i < problem.frames.size(); ++i) {
       // To the first frame: where none is fixed they are free to move together.
       const Se3 T_0_C = problem.frames[0].T_W_C.inverse() * problem.frames[i].T_W_C;
@@ -141,7 +141,7 @@ TEST_P(StructuredSolverTest, TakesTheSameStepsAsCeres) {
     SCOPED_TRACE(seed);
     BundleOptions options;
     options.steps_by_track = false;
-    options.max_iterations_after_elimination = 0;
+    options.max_iterations_after_rejection = 0;
     options.function_tolerance = 1e-6;
     BundleProblem start = Make(seed, &options);
     for (const int max_iterations : {0, 1, 2, 5, 50}) {
@@ -218,8 +218,8 @@ Dense MakeDense(const FactorGraph& graph, const std::vector<int>& order, double 
 TEST_P(StructuredSolverTest, OneStepSolvesTheDenseNormalEquations) {
   BundleOptions options;
   BundleProblem problem = Make(7, &options);
-  options.huber_static = options.huber_dynamic = 2;
-  if (options.huber_smoothness > 0) options.huber_smoothness = 2;
+  options.huber_static_sigmas = options.huber_dynamic_sigmas = 2;
+  if (options.huber_smoothness_sigmas > 0) options.huber_smoothness_sigmas = 2;
   BundleGraph graph(options, &problem);
   StructuredMinimizer minimizer(graph.factor_graph());
   const Dense dense = MakeDense(*graph.factor_graph(), minimizer.order(), 2);

@@ -13,7 +13,7 @@ TrustOptions Exact() {
   TrustOptions options;
   options.min_static_observations = 15;
   options.min_motion_factors = 20;
-  options.max_eliminated_share = 0.25;
+  options.max_rejected_share = 0.25;
   options.max_relative_sigma = 0.5;
   options.max_shift_chi2 = 16;
   return options;
@@ -49,10 +49,10 @@ TEST_F(TrustRule, TheNumberOfMotions) {
 }
 
 TEST_F(TrustRule, HowManyAgree) {
-  without_.num_motion_eliminated = with_.num_rigidity_eliminated = 1000;
-  with_.num_motion_eliminated = 10;
+  without_.num_motion_rejected = with_.num_rigidity_rejected = 1000;
+  with_.num_motion_rejected = 10;
   EXPECT_TRUE(Trusts());
-  with_.num_motion_eliminated = 11;
+  with_.num_motion_rejected = 11;
   EXPECT_FALSE(Trusts());
 }
 

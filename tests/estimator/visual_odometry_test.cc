@@ -359,16 +359,16 @@ TEST(VisualOdometry, CorrectionsDoNotMoveTheOdometryFrame) {
 
 /// Somebody who walks straight on through the rendered room, as the camera of frame k sees him: a
 /// centimetre of noise, three in depth.
-PersonMeasurement Walker(int id, const Eigen::Vector3d& start_W, const Eigen::Vector3d& v_W, int k,
-                         int place) {
+HumanMeasurement Walker(int id, const Eigen::Vector3d& start_W, const Eigen::Vector3d& v_W, int k,
+                        int place) {
   std::mt19937_64 random(static_cast<std::uint64_t>(1000 * id + k));
   std::normal_distribution<double> normal;
   const Eigen::Vector3d sigma_m(0.01, 0.01, 0.03);
-  PersonMeasurement person;
+  HumanMeasurement person;
   person.id = HumanId{id};
   for (const int joint : kBodyJoints) {
     const Eigen::Vector3d offset(0.1 * (joint % 3 - 1), joint < 8 ? -0.5 : 0, 0.05 * (joint % 2));
-    const Eigen::Vector3d noise(normal(random), normal(random), normal(random));
+    const Eigen::Vector3d noise{normal(random), normal(random), normal(random)};
     person.joints.push_back({joint,
                              Truth(place).inverse() * (start_W + kFrameStep_s * k * v_W + offset) +
                                  sigma_m.cwiseProduct(noise),

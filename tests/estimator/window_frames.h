@@ -24,7 +24,7 @@ inline SlidingWindowOptions StaticOnly() {
   SlidingWindowOptions options;
   options.bundle.use_people = false;
   options.bundle.max_iterations = 50;
-  options.bundle.max_iterations_after_elimination = 50;
+  options.bundle.max_iterations_after_rejection = 50;
   options.bundle.function_tolerance = 0;
   options.camera_motion.use_acceleration = false;
   return options;

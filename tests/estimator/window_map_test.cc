@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 #include <vector>
 
@@ -71,7 +72,7 @@ TEST(WindowMap, KeepsAFrameAsItCame) {
   EXPECT_EQ(stereo.uvu_px, Eigen::Vector3d(400, 200, 380));
   EXPECT_TRUE(stereo.has_right);
   EXPECT_EQ(stereo.sigma_px, 0.5);
-  EXPECT_EQ(stereo.num_eliminations, 0);
+  EXPECT_EQ(stereo.num_rejections, 0);
   const WindowMap::Observation& mono = frame.observations.at({4});
   EXPECT_FALSE(mono.has_right);
   EXPECT_EQ(mono.sigma_px, 0.25);
@@ -229,7 +230,7 @@ TEST(WindowMap, TheProblemHoldsWhatIsSeenTwiceAndOnceInTheWindow) {
   const BundleProblem::LandmarkObservation& of_9 = problem.observations[8];
   EXPECT_EQ(of_9.sigma_px, 0.75);
   EXPECT_FALSE(of_9.has_right);
-  EXPECT_FALSE(of_9.is_eliminated);
+  EXPECT_FALSE(of_9.is_rejected);
 }
 
 TEST(WindowMap, ALandmarkWithoutDepthIsNotAdjusted) {
@@ -310,9 +311,9 @@ TEST(WindowMap, WithoutAKeyFrameTheOldestOfTheWindowIsHeld) {
 }
 
 /// Frames 0 to num_frames - 1 that all see landmarks 1 to 3.
-WindowMap Watched(int num_frames, int max_eliminations) {
+WindowMap Watched(int num_frames, int max_rejections) {
   WindowMapOptions options;
-  options.max_eliminations = max_eliminations;
+  options.max_rejections = max_rejections;
   WindowMap map(options);
   for (std::int64_t id = 0; id < num_frames; ++id) {
     map.AddFrame(kCamera, Frame(id, {1, 2, 3}), Pose(static_cast<double>(id)));
@@ -326,7 +327,7 @@ std::vector<LandmarkId> ThrowOut(const std::set<int>& frames, WindowMap* map) {
   for (auto& observation : problem.observations) {
     const std::int64_t id =
         problem.landmarks[static_cast<std::size_t>(observation.landmark)].id.value;
-    observation.is_eliminated = id == 2 && frames.count(observation.frame) > 0;
+    observation.is_rejected = id == 2 && frames.count(observation.frame) > 0;
   }
   return map->Absorb(problem);
 }
@@ -349,9 +350,9 @@ TEST(WindowMap, TakesTheResultBack) {
 TEST(WindowMap, AnObservationGoesAfterSoManyFailuresInARow) {
   WindowMap map = Watched(6, 2);
   EXPECT_TRUE(ThrowOut({4}, &map).empty());
-  EXPECT_EQ(map.frames().at({4}).observations.at({2}).num_eliminations, 1);
+  EXPECT_EQ(map.frames().at({4}).observations.at({2}).num_rejections, 1);
   ThrowOut({}, &map);
-  EXPECT_EQ(map.frames().at({4}).observations.at({2}).num_eliminations, 0);
+  EXPECT_EQ(map.frames().at({4}).observations.at({2}).num_rejections, 0);
   ThrowOut({4}, &map);
   EXPECT_EQ(map.frames().at({4}).observations.count({2}), 1U) << "not twice in a row";
   EXPECT_TRUE(ThrowOut({4}, &map).empty());
@@ -376,9 +377,24 @@ TEST(WindowMap, ALandmarkGoesWhenAsManyOfItsObservationsWereWrongAsRight) {
   }
 }
 
+// Or it would be there again when somebody else gets its number.
+TEST(WindowMap, ARemovedLandmarkIsGoneFromKeyFramesToo) {
+  WindowMapOptions options = Small();
+  options.key_frame_interval = 1000;
+  options.max_rejections = 1;
+  WindowMap map(options);
+  for (std::int64_t id = 0; id < 5; ++id) map.AddFrame(kCamera, Frame(id, {1, 2, 3}), Se3());
+  ASSERT_EQ(Kept(map), (Ids{0, 2, 3, 4}));
+  ASSERT_EQ(ThrowOut({2, 3}, &map).size(), 1U) << "of the key frame and the window's three";
+  for (const std::int64_t id : {0, 2, 3, 4}) {
+    EXPECT_EQ(map.frames().at({id}).observations.count({2}), 0U) << id;
+    EXPECT_EQ(map.frames().at({id}).observations.count({3}), 1U) << id;
+  }
+}
+
 TEST(WindowMap, ARemovedLandmarkIsNotListenedToForFiftyFrames) {
   WindowMapOptions options;
-  options.max_eliminations = 1;
+  options.max_rejections = 1;
   WindowMap map(options);
   for (std::int64_t id = 0; id < 4; ++id) map.AddFrame(kCamera, Frame(id, {1, 2, 3}), Se3());
   ThrowOut({1, 3}, &map);  // the newest was frame 3

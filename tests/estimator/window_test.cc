@@ -29,6 +29,20 @@ std::vector<Se3> Poses(const std::vector<FrameResult>& results) {
   return poses;
 }
 
+// The same scene for a seed with every compiler: bounds below were set on it.
+TEST(SyntheticSceneTest, AWalkersDepthIsDrawnBeforeItsSide) {
+  SyntheticSceneOptions options;
+  options.num_static = 0;
+  options.num_people = 1;
+  std::mt19937 same(options.seed);
+  const double z = std::uniform_real_distribution<double>(6, 12)(same);
+  const double x = std::uniform_real_distribution<double>(-3, 3)(same);
+  const auto joints_W = MakeSyntheticScene(options).joints_W.at(0).at(0);
+  const Eigen::Vector3d hips_W = 0.5 * (joints_W[kRightHip] + joints_W[kLeftHip]);
+  EXPECT_NEAR(hips_W.x(), x, 1e-12);
+  EXPECT_NEAR(hips_W.z(), z, 1e-12);
+}
+
 TEST(SlidingWindowTest, ExactMeasurementsGiveTheExactPath) {
   SyntheticSceneOptions options;
   options.sigma_px = 0;
@@ -79,7 +93,7 @@ TEST(SlidingWindowTest, OutliersAreThrownOut) {
   const std::vector<FrameResult> results = RunAll(StaticOnly(), scene);
   const double error_m = RmsPositionError(Poses(results), scene.T_W_C);
   EXPECT_LT(error_m, 0.015);
-  EXPECT_GT(results.back().estimate.summary.num_reprojection_eliminated, 10);
+  EXPECT_GT(results.back().estimate.summary.num_reprojection_rejected, 10);
 }
 
 TEST(SlidingWindowTest, PeopleCarryTheCameraWhereTheStaticSceneIsGone) {
@@ -98,7 +112,7 @@ TEST(SlidingWindowTest, PeopleCarryTheCameraWhereTheStaticSceneIsGone) {
     for (std::size_t k = 13; k < 17; ++k) {  // the front end coasts, and badly
       scene.frames[k].features.clear();
       scene.frames[k].T_O_C->translation +=
-          Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
+          Eigen::Vector3d{normal(generator), normal(generator), normal(generator)};
     }
     const std::vector<FrameResult> results = RunAll(SlidingWindowOptions(), scene);
     for (std::size_t k = 13; k < 17; ++k) {
@@ -242,7 +256,7 @@ TEST(TrustRuleTest, EachConditionCounts) {
   other.num_motion = 10;
   EXPECT_FALSE(TrustsPeople(options, 10, without, other, shift));  // hardly anybody
   other = with;
-  other.num_motion_eliminated = 30;
+  other.num_motion_rejected = 30;
   EXPECT_FALSE(TrustsPeople(options, 10, without, other, shift));  // they disagree
   other = with;
   other.newest_covariance = 0.0085 * Matrix6d::Identity();         // 0.85 is more than 0.9 squared

@@ -1,3 +1,4 @@
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "common/config/config_reader.h"

@@ -165,21 +165,22 @@ copy_tree() {
     mkdir -p "$folder/$(dirname "$file")"
     cp "$AIRDOS_ROOT/$file" "$folder/$file"
   done
-  (cd "$folder" && find . -type f -print) | while IFS= read -r file; do
+  (cd "$folder" && find . -path ./build -prune -o -type f -print) | while IFS= read -r file; do
     [[ -f $AIRDOS_ROOT/$file ]] || rm -f "$folder/$file"
   done
 }
 
-# build_tests WORKER TESTS: those programs.
+# build_tests WORKER TESTS: those programs. The build folder lies in the sources as everybody's does: the compiler's cache knows
+# all but the mistake.
 build_tests() {
   local -a targets
   read -ra targets <<< "$2"
-  CCACHE_BASEDIR=$1 cmake --build "$1/build" -- -j"$(nproc)" "${targets[@]}"
+  CCACHE_BASEDIR=$1 cmake --build "$1/source/build" -- -j"$(nproc)" "${targets[@]}"
 }
 
 # run_test WORKER TEST: with a time limit, until the first failure. AIRDOS_DATA_DIR is as in this environment.
 run_test() {
-  (cd "$1/build" && GTEST_FAIL_FAST=1 GTEST_BRIEF=1 timeout --kill-after=10 "$timeout_s" "bin/$2")
+  (cd "$1/source/build" && GTEST_FAIL_FAST=1 GTEST_BRIEF=1 timeout --kill-after=10 "$timeout_s" "bin/$2")
 }
 
 # prepare WORKER: copy, configuration, and all tests without a mistake: built by each worker, run by the first.
@@ -187,8 +188,9 @@ prepare() {
   local worker=$1 all test cache=()
   copy_tree "$worker/source"
   ! command -v ccache > /dev/null || cache=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-  cmake -S "$worker/source" -B "$worker/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DAIRDOS_BUILD_JAVA=OFF "${cache[@]}" \
-    > "$worker/configure.log" 2>&1 || die "cannot be configured (log: $worker/configure.log)"
+  cmake -S "$worker/source" -B "$worker/source/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DAIRDOS_BUILD_JAVA=OFF \
+    "${cache[@]}" > "$worker/configure.log" 2>&1 ||
+    die "cannot be configured (log: $worker/configure.log)"
   all=$(printf '%s\n' "${mutant_tests[@]}" | tr ' ' '\n' | sort -u | tr '\n' ' ')
   build_tests "$worker" "$all" > "$worker/build.log" 2>&1 || die "does not build (log: $worker/build.log)"
   [[ $worker == "$build/1" ]] || return 0
@@ -201,11 +203,12 @@ prepare() {
 # judge WORKER I: builds and runs the tests on the tree as it is now; prints the verdict and what noticed it.
 judge() {
   local worker=$1 log=$build/log_$2.txt test code
-  if ! build_tests "$worker" "${mutant_tests[$2]}" > "$log" 2>&1; then
-    printf 'invalid\t%s\n' "it does not compile: $log"
-    return
-  fi
+  : > "$log"
   for test in ${mutant_tests[$2]}; do
+    if ! build_tests "$worker" "$test" >> "$log" 2>&1; then
+      printf 'invalid\t%s\n' "it does not compile: $log"
+      return
+    fi
     code=0
     run_test "$worker" "$test" >> "$log" 2>&1 || code=$?
     if ((code == 124 || code == 137)); then

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <opencv2/imgcodecs.hpp>
@@ -99,12 +100,11 @@ TEST_F(LogSurveyTest, WhatGoesBackIsToldFromASessionThatStartsAgain) {
   AddImages(channel::kCameraLeft, {5, 6, 7}, 1);
   AddImages(channel::kCameraLeft, {8, 9, 10, 8}, 2);
   AddImages(channel::kCameraRight, {3, 5, 4, 7, 6}, 1);
-  EXPECT_EQ(
-      Report("log.order"),
-      "error CAMERA_LEFT 8: comes after number 10: its session starts again, and nobody works "
-      "on it twice; whatever is played or started again must take a new session "
-      "(airdos-stereo-player --session)\n"
-      "error CAMERA_RIGHT 4: comes after number 5; so 2 of 5 messages\n");
+  EXPECT_EQ(Report("log.order"),
+            "error CAMERA_LEFT 8: comes after number 10: its session starts again, but a session "
+            "is processed only once; whatever is played or started again must take a new session "
+            "(airdos-stereo-player --session)\n"
+            "error CAMERA_RIGHT 4: comes after number 5; so 2 of 5 messages\n");
 }
 
 TEST_F(LogSurveyTest, RepetitionsAreCountedFromTheFirstOn) {
@@ -119,15 +119,15 @@ TEST_F(LogSurveyTest, EachSessionHasItsImages) {
   AddImages(channel::kCameraLeft, {7, 5, 6}, 4);
   AddImages(channel::kCameraLeft, {0, 1}, 3);
   const std::string text =
-      "2 sessions, a run of its own each: 4 with 3 images (5 to 7), 3 with 2 "
+      "2 sessions, each a separate run: 4 with 3 images (5 to 7), 3 with 2 "
       "images (0 to 1)";
-  EXPECT_EQ(Report("log.sessions"), "warning " + text + "; pictures of the first are looked at\n");
+  EXPECT_EQ(Report("log.sessions"), "warning " + text + "; pictures of the first are checked\n");
   for (const std::int64_t session : {9, 8, 7, 6})
     AddImages(channel::kCameraLeft, {session}, session);
   EXPECT_EQ(Report("log.sessions"),
-            "warning 6 sessions, a run of its own each: 4 with 3 images (5 to 7), 3 with 2 images "
+            "warning 6 sessions, each a separate run: 4 with 3 images (5 to 7), 3 with 2 images "
             "(0 to 1), 9 with 1 images (9 to 9), 8 with 1 images (8 to 8), 7 with 1 images (7 to "
-            "7), …; pictures of the first are looked at\n");
+            "7), …; pictures of the first are checked\n");
 }
 
 TEST_F(LogSurveyTest, TheFramesAreThoseOfTheFirstSessionEachOnce) {
@@ -162,10 +162,11 @@ TEST_F(LogSurveyTest, CalibrationsThatComeLateOrChangeAreCounted) {
   AddCalibration(4, 20.5);
   AddCalibration(5);
   AddCalibration(6, 20.5);
-  EXPECT_EQ(Report("log.calibration"),
-            "warning 3 images come before the first CALIBRATION\n"
-            "warning CALIBRATION 4: differs from the first one; only the first of a session holds; "
-            "so 2 of 5 messages\n");
+  EXPECT_EQ(
+      Report("log.calibration"),
+      "warning 3 images come before the first CALIBRATION\n"
+      "warning CALIBRATION 4: differs from the first one; only the first of a session applies; "
+      "so 2 of 5 messages\n");
 }
 
 // Ground truth is nothing that a log must have.
@@ -241,7 +242,7 @@ TEST_F(LogSurveyTest, TheFirstFileThatContradictsItsMessageIsNamed) {
     Add(channel::kCameraLeft, message);
   }
   EXPECT_EQ(Report("images.file"),
-            "error CAMERA_LEFT 2: the message says 16 x 12 px, the file in it is of 20 x 10 px; so "
+            "error CAMERA_LEFT 2: the message says 16 x 12 px, the file in it has 20 x 10 px; so "
             "2 of 3 messages\n");
 }
 
@@ -257,12 +258,13 @@ std::string TimesSaid(const std::vector<std::int64_t>& utimes) {
 }
 
 TEST(CheckLogTimesTest, ClocksThatStandStillOrGoBackAreSaidWithTheirPlace) {
-  EXPECT_EQ(TimesSaid({0, 100000, 200000, 200000, 300000}),
-            "times.order: 1 of 5 images have the same capture time as the one before; the first is "
-            "at place 4 in the log's order\n");
+  EXPECT_EQ(
+      TimesSaid({0, 100000, 200000, 200000, 300000}),
+      "times.order: 1 of 5 images have the same capture time as the previous one; the first is "
+      "at place 4 in the log's order\n");
   EXPECT_EQ(
       TimesSaid({0, 100000, 50000, 150000, 250000, 240000}),
-      "times.order: 2 of 6 images have an earlier capture time than the one before; the first "
+      "times.order: 2 of 6 images have an earlier capture time than the previous one; the first "
       "is at place 3 in the log's order\n");
   EXPECT_EQ(TimesSaid({7}), "");
 }
@@ -341,8 +343,8 @@ TEST_F(CheckLogBooksTest, PicturesAreThoseOfTheFirstSession) {
     messages_.push_back(message);
   }
   EXPECT_EQ(Check(),
-            "[log.sessions] 2 sessions, a run of its own each: 5 with 14 images (0 to 13), 6 with "
-            "14 images (0 to 13); pictures of the first are looked at\n");
+            "[log.sessions] 2 sessions, each a separate run: 5 with 14 images (0 to 13), 6 with "
+            "14 images (0 to 13); pictures of the first are checked\n");
 }
 
 // Said once, by whoever looks at sizes; what contradicts itself is not looked into.
@@ -355,7 +357,7 @@ TEST_F(CheckLogBooksTest, AMessageThatContradictsItsFileIsNamedOnce) {
     envelope.payload = Encode(message);
   }
   EXPECT_EQ(Check(),
-            "[images.file] the message says 328 x 192 px, the file in it is of 320 x 192 px; so 14 "
+            "[images.file] the message says 328 x 192 px, the file in it has 320 x 192 px; so 14 "
             "of 14 messages\n");
 }
 

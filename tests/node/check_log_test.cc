@@ -1,7 +1,6 @@
 #include "processes/node/check/check_log.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include "processes/node/message/channels.h"
 #include "processes/node/message/codec.h"
 #include "processes/stereo_player/dataset_source.h"
+#include "tests/node/small_log_test.h"
 #include "tests/support/small_sequence.h"
 
 namespace airdos {
@@ -23,39 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class CheckLogTest : public testing::Test {
+class CheckLogTest : public SmallLogTest {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("airdos_check_log_" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-    path_ = (folder_ / "input.lcm").string();
-    messages_ = SoundMessages();
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  /// What the player publishes of the small sequence.
-  const std::vector<Envelope>& SoundMessages() const {
-    static const std::vector<Envelope> messages = [this] {
-      const fs::path data = folder_ / "data";
-      SmallSequence::Make().Write(data);
-      DatasetSource source(data.string(), 0, 1000, 5, {});
-      std::vector<Envelope> all;
-      for (auto frame = source.NextFrame(); !frame.empty(); frame = source.NextFrame()) {
-        all.insert(all.end(), frame.begin(), frame.end());
-      }
-      return all;
-    }();
-    return messages;
-  }
-
-  /// Writes the messages as a log.
-  void Write() const {
-    EventLogWriter writer(path_);
-    std::int64_t utime = 0;
-    for (const Envelope& message : messages_) {
-      writer.Append(utime += 1000, message.channel, message.payload.data(), message.payload.size());
-    }
-  }
+  CheckLogTest() : SmallLogTest("check_log", 5) {}
 
   std::string Check(std::size_t odometry_frames = 0) {
     CheckOptions options;
@@ -91,11 +61,6 @@ class CheckLogTest : public testing::Test {
     ADD_FAILURE() << "no such message on " << channel;
     return messages_.begin();
   }
-  void Remove(const std::string& channel) {
-    messages_.erase(std::remove_if(messages_.begin(), messages_.end(),
-                                   [&](const Envelope& m) { return m.channel == channel; }),
-                    messages_.end());
-  }
   /// Decodes a message, has it changed, and puts it back.
   template <class Message>
   void Change(Envelope* envelope, const std::function<void(Message*)>& change) {
@@ -104,11 +69,6 @@ class CheckLogTest : public testing::Test {
     change(&message);
     envelope->payload = Encode(message);
   }
-
-  fs::path folder_;
-  std::string path_;
-  std::vector<Envelope> messages_;
-  FindingList findings_;
 };
 
 TEST_F(CheckLogTest, ASoundLogHasNothingButNotes) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -83,6 +84,41 @@ TYPED_TEST(CodecTest, MutatedMessagesNeitherCrashNorThrowNorGrow) {
   }
   EXPECT_GT(num_decoded, kNumMutations / 100) << "the mutations reach what is behind decode()";
   EXPECT_LT(LargestAllocation(), 1u << 20);
+}
+
+// As lcm-gen makes it, encode() would send what lies behind the list.
+template <class Message>
+std::string Refusal(const Message& message) {
+  try {
+    Encode(message);
+  } catch (const std::length_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(EncodeTest, RefusesAListThatIsNotAsLongAsItsCount) {
+  auto image = Sample<image_t>();
+  image.num_bytes = static_cast<std::int32_t>(image.data.size()) + 1;
+  EXPECT_EQ(Refusal(image), "image_t: data does not have num_bytes elements");
+  image.num_bytes = -1;
+  EXPECT_EQ(Refusal(image), "image_t: data does not have num_bytes elements");
+
+  auto keypoints = Sample<person_keypoints_t>();
+  keypoints.v_px[1].pop_back();
+  EXPECT_EQ(Refusal(keypoints),
+            "person_keypoints_t: a row of v_px does not have num_joints elements");
+
+  auto people = Sample<human_observations_t>();
+  people.num_humans = -1;
+  EXPECT_EQ(Refusal(people), "human_observations_t: humans does not have num_humans elements");
+  people.num_humans = static_cast<std::int32_t>(people.humans.size());
+  people.humans[1].covariance_C[0].pop_back();
+  EXPECT_EQ(Refusal(people), "human_observation_t: a row of covariance_C does not have 6 elements");
+
+  auto status = Sample<process_status_t>();
+  status.warnings.pop_back();
+  EXPECT_EQ(Refusal(status), "process_status_t: warnings does not have num_warnings elements");
 }
 
 }  // namespace

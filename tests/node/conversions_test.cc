@@ -6,7 +6,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
+#include "processes/node/message/header.h"
 #include "processes/node/message/keypoint_messages.h"
 
 namespace airdos {
@@ -87,6 +89,26 @@ TEST(ConversionsTest, TheMessageHasEachValueOfThePoseInItsPlace) {
   FromSe3({Eigen::Quaterniond(0.5, 0.1, -0.7, 0.3), {1, 2, 3}}, position, orientation);
   EXPECT_EQ(orientation[2], -0.7);
   EXPECT_EQ(orientation[3], 0.3);
+}
+
+TEST(ConversionsTest, TheHeaderIsTakenOverAndAllElseIsZero) {
+  const auto message = MessageOf<stereo_calibration_t>({11, 12, 13});
+  EXPECT_EQ(message.utime, 11);
+  EXPECT_EQ(message.seq, 12);
+  EXPECT_EQ(message.session, 13);
+  EXPECT_EQ(message.width, 0);
+  EXPECT_EQ(message.baseline_m, 0);
+  const Header header = HeaderOf(message);
+  EXPECT_EQ(header.utime, 11);
+  EXPECT_EQ(header.seq, 12);
+  EXPECT_EQ(header.session, 13);
+}
+
+TEST(ConversionsTest, ACovarianceIsItsUpperTriangleRowByRow) {
+  Eigen::Matrix3d S;
+  S << 1, 2, 3, 2, 4, 5, 3, 5, 6;
+  EXPECT_EQ(FromCovariance(S), (std::vector<float>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(ToCovariance({1, 2, 3, 4, 5, 6}), S);
 }
 
 /// Joint j of person p: u = 1000 p + 7 j, v = 400 + 50 p - 3 j, confidence (3 j + p + 1) / 100.

@@ -102,6 +102,16 @@ TEST(FrameJoinerTest, ANewSessionSettlesTheOldOneAndStartsOver) {
   EXPECT_EQ(Add(&joiner, 0, 9), Arrival::kLate) << "the channel is in the new session";
 }
 
+TEST(FrameJoinerTest, WhereAChannelHasSessionsInAnotherOrderItLosesOne) {
+  FrameJoiner joiner(2, 0);
+  Add(&joiner, 0, 0, 5);
+  Add(&joiner, 0, 0, 6);
+  EXPECT_EQ(Add(&joiner, 1, 0, 6), Arrival::kNew);
+  EXPECT_EQ(Add(&joiner, 1, 0, 5), Arrival::kLate);
+  EXPECT_EQ(Work(&joiner), "5/0-1 ");
+  EXPECT_EQ(Work(&joiner), "6/0 ");
+}
+
 TEST(FrameJoinerTest, SessionsAreForgottenAfterAThousandOthers) {
   FrameJoiner joiner(1, 0);
   for (std::int64_t session = 1000; session < 4000; ++session) {

@@ -12,6 +12,8 @@
 #include "airdos/map_update_t.hpp"
 #include "airdos/person_mask_t.hpp"
 #include "airdos/pose_t.hpp"
+#include "processes/node/message/header.h"
+#include "tests/support/echo_node.h"
 
 namespace airdos {
 namespace {
@@ -57,11 +59,7 @@ class ScribeNode : public FrameNode<Inputs> {
 
 template <class Message>
 Message MessageAt(std::int64_t seq, std::int64_t session) {
-  Message message = {};
-  message.utime = 1000 * seq;
-  message.seq = seq;
-  message.session = session;
-  return message;
+  return MessageOf<Message>({1000 * seq, seq, session});
 }
 
 Envelope Mask(std::int64_t seq, std::int64_t session = 7) {
@@ -185,6 +183,44 @@ TEST(FrameNodeTest, TheCalibrationDoesNotChangeWithinASession) {
   EXPECT_EQ(Counters(node, channel::kCalibration).num_rejected, 1);
   GiveFrame(&node, 30);
   EXPECT_EQ(node.text, "session7 30mp0@1 ");
+}
+
+TEST(FrameNodeTest, ACalibrationHoldsWhateverItsNumberAndTime) {
+  constexpr std::int64_t kLargest = std::int64_t{1} << 40;
+  ScribeNode node;
+  Give(&node, Calibration(1, kLargest));
+  GiveFrame(&node, 30);
+  GiveFrame(&node, 31);
+  EXPECT_EQ(node.text, "session7 30mp0@1 31mp0@1 ");
+  Give(&node, Calibration(1, kLargest + 1));
+  EXPECT_EQ(Counters(node, channel::kCalibration).num_rejected, 1);
+}
+
+TEST(FrameNodeTest, OfTwoMessagesOfOneNumberTheFirstCounts) {
+  for (const bool is_large_first : {true, false}) {
+    EchoNode node;  // says how many bytes the images have
+    const auto give = [&](const std::string& name, int width) {
+      auto image = MessageAt<image_t>(0, 7);
+      image.width = image.num_bytes = width;
+      image.height = 1;
+      image.encoding = image_t::ENCODING_RAW_GRAY8;
+      image.data.resize(static_cast<std::size_t>(width));
+      const std::vector<std::uint8_t> bytes = Encode(image);
+      node.Receive(name, bytes.data(), bytes.size());
+    };
+    const Envelope calibration = Calibration(1);
+    node.Receive(calibration.channel, calibration.payload.data(), calibration.payload.size());
+    give(channel::kCameraLeft, is_large_first ? 20 : 10);
+    give(channel::kCameraLeft, is_large_first ? 10 : 20);
+    give(channel::kCameraRight, 30);
+    EXPECT_TRUE(node.Step());
+    EXPECT_EQ(node.channels().at(channel::kCameraLeft).num_duplicate, 1);
+    pose_t echo = {};
+    const std::vector<Envelope> output = node.TakeOutput();
+    ASSERT_EQ(output.size(), 1U);
+    ASSERT_TRUE(Decode(output[0].payload.data(), output[0].payload.size(), &echo));
+    EXPECT_EQ(echo.position[0], is_large_first ? 20 : 10);
+  }
 }
 
 TEST(FrameNodeTest, WithoutCalibrationACompletedFrameHasNoOutput) {

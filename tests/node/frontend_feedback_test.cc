@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "processes/frontend/frontend_node.h"
-#include "tests/node/frontend_messages.h"
+#include "tests/node/frontend_walk.h"
 
 // What the frontend makes of the optimizer's MAP_UPDATE.
 
@@ -56,6 +56,13 @@ TEST(FrontendNode, AnUpdateInPartsCountsOnceItIsWhole) {
   Send(channel::kMapUpdate, part, &node);
   EXPECT_FALSE(node.Step());
   EXPECT_EQ(node.waiting_for(), channel::kMapUpdate);
+  // What does not go with it is no part of it.
+  Send(channel::kMapUpdate, part, &node);
+  EXPECT_EQ(node.channels().at(channel::kMapUpdate).last_reject, "part 1 came twice");
+  Send(channel::kMapUpdate, Update(0), &node);
+  EXPECT_EQ(node.channels().at(channel::kMapUpdate).last_reject,
+            "num_parts 1 differs from that of another part");
+  EXPECT_FALSE(node.Step());
   part.part = 0;
   Send(channel::kMapUpdate, part, &node);
   EXPECT_EQ(StepAll(&node).size(), 1u);

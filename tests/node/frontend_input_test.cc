@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "processes/frontend/frontend_node.h"
-#include "tests/node/frontend_messages.h"
+#include "tests/node/frontend_walk.h"
 
 // What the frontend makes of images and masks: good, missing, wrong.
 

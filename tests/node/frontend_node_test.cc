@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/node/frontend_messages.h"
+#include "tests/node/frontend_walk.h"
 
 namespace airdos {
 namespace {
@@ -162,59 +162,6 @@ TEST(FrontendNode, TheOrderInWhichChannelsArriveDoesNotMatter) {
   EXPECT_EQ(Outputs({left, mask, right, calibration, humans, keypoints}, 100, true), expected);
   EXPECT_EQ(Outputs({calibration, left, right, mask, humans, keypoints}, 1, false), expected);
   EXPECT_EQ(Outputs({keypoints, mask, left, right, calibration, humans}, 100, false), expected);
-}
-
-TEST(FrontendOptions, TheFileHasEveryKeyAndTheDefaults) {
-  ConfigReader config = ConfigReader::FromFile(std::string(AIRDOS_SOURCE_DIR) +
-                                               "/launch_scripts/config/frontend.yaml");
-  const FrontendOptions options = ReadFrontendOptions(&config);
-  config.Finish();
-  const FrontendOptions defaults;
-  EXPECT_EQ(options.use_masks, defaults.use_masks);
-  EXPECT_EQ(options.mask_dilation_px, defaults.mask_dilation_px);
-  EXPECT_EQ(options.feedback_lag, defaults.feedback_lag);
-  const VisualOdometryOptions& a = options.odometry;
-  const VisualOdometryOptions& b = defaults.odometry;
-  EXPECT_EQ(a.extractor.num_levels, b.extractor.num_levels);
-  EXPECT_EQ(a.extractor.fast_threshold, b.extractor.fast_threshold);
-  EXPECT_EQ(a.extractor.cell_size_px, b.extractor.cell_size_px);
-  EXPECT_EQ(a.extractor.max_features_per_cell, b.extractor.max_features_per_cell);
-  EXPECT_EQ(a.stereo.min_depth_m, b.stereo.min_depth_m);
-  EXPECT_EQ(a.stereo.min_disparity_px, b.stereo.min_disparity_px);
-  EXPECT_EQ(a.stereo.max_hamming, b.stereo.max_hamming);
-  EXPECT_EQ(a.stereo.max_row_error_px, b.stereo.max_row_error_px);
-  EXPECT_EQ(a.stereo.min_correlation, b.stereo.min_correlation);
-  EXPECT_EQ(a.map.max_landmarks, b.map.max_landmarks);
-  EXPECT_EQ(a.map.max_frames_unconfirmed, b.map.max_frames_unconfirmed);
-  EXPECT_EQ(a.map.min_found_ratio, b.map.min_found_ratio);
-  EXPECT_EQ(a.wide_radius_px, b.wide_radius_px);
-  EXPECT_EQ(a.wide_max_hamming, b.wide_max_hamming);
-  EXPECT_EQ(a.narrow_max_hamming, b.narrow_max_hamming);
-  EXPECT_EQ(a.min_inliers_tracking, b.min_inliers_tracking);
-  EXPECT_EQ(a.min_inliers_weak, b.min_inliers_weak);
-  EXPECT_EQ(a.min_correlation, b.min_correlation);
-  EXPECT_EQ(a.aligned_sigma_px, b.aligned_sigma_px);
-  EXPECT_EQ(a.corner_sigma_px, b.corner_sigma_px);
-  EXPECT_EQ(a.max_observations, b.max_observations);
-  EXPECT_EQ(a.observation_cell_px, b.observation_cell_px);
-  EXPECT_EQ(a.motion.linear_start_m_s2, b.motion.linear_start_m_s2);
-  EXPECT_EQ(a.motion.linear_floor_m_s2, b.motion.linear_floor_m_s2);
-  EXPECT_EQ(a.motion.linear_ceiling_m_s2, b.motion.linear_ceiling_m_s2);
-  EXPECT_EQ(a.motion.angular_start_rad_s2, b.motion.angular_start_rad_s2);
-  EXPECT_EQ(a.motion.angular_floor_rad_s2, b.motion.angular_floor_rad_s2);
-  EXPECT_EQ(a.motion.angular_ceiling_rad_s2, b.motion.angular_ceiling_rad_s2);
-  EXPECT_EQ(a.motion.initial_speed_m_s, b.motion.initial_speed_m_s);
-  EXPECT_EQ(a.motion.initial_turn_rad_s, b.motion.initial_turn_rad_s);
-  EXPECT_EQ(a.motion.memory_s, b.motion.memory_s);
-  EXPECT_EQ(a.people.acceleration_m_s2, b.people.acceleration_m_s2);
-  EXPECT_EQ(a.people.initial_speed_m_s, b.people.initial_speed_m_s);
-  EXPECT_EQ(a.people.wobble_m, b.people.wobble_m);
-  EXPECT_EQ(a.people.max_joint_sigmas, b.people.max_joint_sigmas);
-  EXPECT_EQ(a.people.max_missed_frames, b.people.max_missed_frames);
-  EXPECT_EQ(a.people.min_seen_frames, b.people.min_seen_frames);
-  EXPECT_EQ(a.max_static_for_people, b.max_static_for_people);
-  EXPECT_EQ(options.use_people, defaults.use_people);
-  EXPECT_EQ(options.min_keypoint_confidence, defaults.min_keypoint_confidence);
 }
 
 }  // namespace

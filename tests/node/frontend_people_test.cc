@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "processes/frontend/frontend_node.h"
-#include "tests/node/frontend_messages.h"
+#include "tests/node/frontend_walk.h"
 
 // What the frontend makes of HUMAN_OBSERVATIONS and PERSON_KEYPOINTS_LEFT.
 

@@ -10,7 +10,7 @@
 
 #include "common/features/visual_odometry.h"
 #include "processes/frontend/frontend_node.h"
-#include "tests/node/frontend_messages.h"
+#include "tests/node/frontend_walk.h"
 
 namespace airdos {
 namespace {
@@ -23,7 +23,7 @@ constexpr int kMaskBegin_px = 250, kMaskEnd_px = 280;
 
 FrontendOptions Options() {
   FrontendOptions options;
-  options.feedback_lag = 2;
+  options.feedback_lag_frames = 2;
   options.mask_dilation_px = 5;
   options.odometry.max_static_for_people = 10000;  // people always have a say
   options.odometry.people.wobble_m = 0.01;
@@ -74,12 +74,12 @@ human_observations_t PeopleMessage(int seq) {
   return message;
 }
 
-std::vector<PersonMeasurement> PeopleMeasured(int seq) {
-  std::vector<PersonMeasurement> people;
+std::vector<HumanMeasurement> PeopleMeasured(int seq) {
+  std::vector<HumanMeasurement> people;
   for (const PersonAt& person : kPeople) {
-    PersonMeasurement measurement{HumanId{person.track}, {}};
+    HumanMeasurement measurement{HumanId{person.track}, {}};
     for (std::size_t i = 0; i < 5; ++i) {
-      PersonMeasurement::Joint joint;
+      HumanMeasurement::Joint joint;
       joint.joint = kJoints[i];
       joint.p_C = JointInCamera(person, kJoints[i], seq).cast<float>().cast<double>();
       joint.covariance_C =

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/util/error.h"
+#include "processes/node/message/header.h"
 
 namespace airdos {
 namespace {
@@ -22,11 +23,7 @@ std::unique_ptr<Node> MakeNode() {
 
 template <class Message>
 Message WithHeader(std::int64_t seq, std::int64_t session) {
-  Message message{};
-  message.utime = seq * 100000;
-  message.seq = seq;
-  message.session = session;
-  return message;
+  return MessageOf<Message>({seq * 100000, seq, session});
 }
 
 template <class Message>
@@ -96,6 +93,28 @@ std::vector<human_observations_t> Outputs(Node* node) {
   return messages;
 }
 
+TEST(HumanTrackerNode, ImagesOfAnotherSizeThanTheCalibrationSaysAreRejected) {
+  const auto node = MakeNode();
+  SendCalibration(7, node.get());
+  const std::string channels[] = {channel::kCameraLeft, channel::kCameraRight};
+  for (int i = 0; i < 2; ++i) {
+    auto image = WithHeader<image_t>(3, 7);
+    image.width = kCamera.width - (i == 0 ? 1 : 0);
+    image.height = kCamera.height - i;
+    image.encoding = image_t::ENCODING_RAW_GRAY8;
+    image.data.assign(static_cast<std::size_t>(image.width * image.height), 100);
+    image.num_bytes = static_cast<std::int32_t>(image.data.size());
+    Send(channels[i], image, node.get());
+  }
+  SendPerson(channel::kPersonKeypointsLeft, 3, 7, 0, false, node.get());
+  SendPerson(channel::kPersonKeypointsRight, 3, 7, 0, true, node.get());
+  EXPECT_EQ(Outputs(node.get()).size(), 1u) << "the frame goes on without them";
+  for (const std::string& name : channels) {
+    EXPECT_EQ(node->channels().at(name).num_rejected, 1);
+    EXPECT_EQ(node->channels().at(name).last_reject, "its size is not that of the calibration");
+  }
+}
+
 TEST(HumanTrackerNode, ReportsAPersonWhereItIs) {
   const auto node = MakeNode();
   SendCalibration(7, node.get());
@@ -155,7 +174,7 @@ TEST(HumanTrackerNode, OneMessageAFrameWhateverIsMissing) {
 
 TEST(HumanTrackerNode, ConfigurationIsStrict) {
   ConfigReader config = ConfigReader::FromFile(kConfigFile);
-  config.Override("pairing.gate=-1");
+  config.Override("pairing.max_mean_squared_sigmas=-1");
   EXPECT_THROW(MakeHumanTrackerNode(&config), InputError);
 }
 

@@ -8,6 +8,7 @@
 
 #include "common/human/human_tracker.h"
 #include "processes/human_tracker/human_tracker_node.h"
+#include "processes/node/message/header.h"
 
 namespace airdos {
 namespace {
@@ -64,11 +65,7 @@ Detections People(int k, bool is_right) {
 
 template <class Message>
 Message WithHeader(int k) {
-  Message message{};
-  message.utime = 900000 + 100000 * k;
-  message.seq = kFirstSeq + k;
-  message.session = kSession;
-  return message;
+  return MessageOf<Message>({900000 + 100000 * k, kFirstSeq + k, kSession});
 }
 
 template <class Message>

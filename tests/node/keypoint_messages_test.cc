@@ -7,7 +7,7 @@
 namespace airdos {
 namespace {
 
-/// Joint j of person p is at (100 p + j, 50 p + j) with confidence 0.5 + j / 100.
+/// Joint j of person p is at (100 p + j, 50 p + j) with confidence 0.5 + p / 4 + j / 100.
 person_keypoints_t Message(int layout, int num_people, int num_joints) {
   person_keypoints_t message{};
   message.layout = static_cast<std::int8_t>(layout);
@@ -18,7 +18,7 @@ person_keypoints_t Message(int layout, int num_people, int num_joints) {
     for (int j = 0; j < num_joints; ++j) {
       u_px.push_back(static_cast<float>(100 * p + j));
       v_px.push_back(static_cast<float>(50 * p + j));
-      confidence.push_back(0.5F + 0.01F * static_cast<float>(j));
+      confidence.push_back(0.5F + 0.25F * static_cast<float>(p) + 0.01F * static_cast<float>(j));
     }
     message.u_px.push_back(u_px);
     message.v_px.push_back(v_px);
@@ -35,7 +35,7 @@ TEST(KeypointMessages, Coco18IsTakenAsItIs) {
       const BodyKeypoint& joint = people[static_cast<std::size_t>(p)][static_cast<std::size_t>(j)];
       EXPECT_EQ(joint.u_px, 100 * p + j);
       EXPECT_EQ(joint.v_px, 50 * p + j);
-      EXPECT_NEAR(joint.confidence, 0.5 + 0.01 * j, 1e-6);
+      EXPECT_NEAR(joint.confidence, 0.5 + 0.25 * p + 0.01 * j, 1e-6);
     }
   }
 }

@@ -2,6 +2,7 @@
 // and when it goes on.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <string>
@@ -165,7 +166,7 @@ TEST(LockstepGateBooksTest, PublishingIsNoProgress) {
   EXPECT_TRUE(gate.IsAllDone(60.1));
   const std::vector<std::string> notes = gate.TakeNotes();
   ASSERT_FALSE(notes.empty());
-  EXPECT_EQ(notes.back(), "a finishes no frame for 60 s: going on without it");
+  EXPECT_EQ(notes.back(), "a has finished no frame for 60 s: continuing without it");
 }
 
 TEST(LockstepGateBooksTest, WhoCameBeforeTheFirstFrameMissedNothing) {

@@ -103,7 +103,7 @@ TEST(LockstepGateTest, GoesOnAfterARestartAndAsksForTheCalibration) {
   gate.OnStatus(Status("b", 77), 1);
   EXPECT_TRUE(gate.MayPublish(1));
   EXPECT_EQ(Notes(&gate),
-            "b was restarted (process 2, now 77): going on, it missed 2 frames at least\n");
+            "b was restarted (process 2, now 77): continuing, it missed 2 frames at least\n");
   EXPECT_TRUE(gate.TakeNewcomer());
   EXPECT_FALSE(gate.TakeNewcomer());
 }
@@ -117,7 +117,7 @@ TEST(LockstepGateTest, NamesTheOneThatStallsAndGivesUpTheOneThatIsSilent) {
   EXPECT_EQ(Notes(&gate), "waiting for b to finish a frame, 2 in flight\n");
   gate.OnStatus(Status("a", 1), 9);
   EXPECT_TRUE(gate.MayPublish(10.1));
-  EXPECT_EQ(Notes(&gate), "b is silent for 10 s: going on without it\n");
+  EXPECT_EQ(Notes(&gate), "b is silent for 10 s: continuing without it\n");
   gate.OnStatus(Status("b", 3), 11);
   EXPECT_EQ(Notes(&gate), "b is there (process 3)\n");
   gate.OnPublished(kSession, 2, 11);
@@ -137,7 +137,7 @@ TEST(LockstepGateTest, GivesUpOneThatLivesButFinishesNothing) {
   gate.OnStatus(Status("a", 1), 61);
   gate.OnStatus(Waiting("b", 2), 61);
   EXPECT_TRUE(gate.MayPublish(61));
-  EXPECT_NE(Notes(&gate).find("b finishes no frame for 60 s: going on without it"),
+  EXPECT_NE(Notes(&gate).find("b has finished no frame for 60 s: continuing without it"),
             std::string::npos);
 }
 
@@ -150,9 +150,10 @@ TEST(LockstepGateTest, GoesOnWhenAllThatIsInFlightWasLostOnTheWay) {
     EXPECT_FALSE(gate.MayPublish(now_s)) << "it may still get them";
   }
   EXPECT_TRUE(gate.MayPublish(10.5));
-  EXPECT_NE(Notes(&gate).find("b has no frame to work on for 10 s: the 2 on their way to it are "
-                              "lost, going on"),
-            std::string::npos);
+  EXPECT_NE(
+      Notes(&gate).find(
+          "b has had no frame to process for 10 s: the 2 in transit to it are lost, continuing"),
+      std::string::npos);
   gate.OnPublished(kSession, 2, 11);
   gate.OnPublished(kSession, 3, 11);
   EXPECT_FALSE(gate.MayPublish(11)) << "it still counts";
@@ -176,7 +177,7 @@ TEST(LockstepGateTest, GivesUpOneThatNeverStarts) {
   LockstepGate gate(TwoProcesses(), 100);
   gate.OnStatus(Status("a", 1), 100);
   EXPECT_FALSE(gate.MayPublish(106));
-  EXPECT_EQ(Notes(&gate), "waiting for b to say READY\n");
+  EXPECT_EQ(Notes(&gate), "waiting for b to report READY\n");
   gate.OnStatus(Status("a", 1), 160);
   EXPECT_TRUE(gate.MayPublish(161));
 }
@@ -212,7 +213,7 @@ TEST(LockstepGateTest, WhoIsRestartedForEverIsNotNotedForEver) {
     }
   }
   EXPECT_EQ(num_notes, LockstepGate::kMaxNotes);
-  EXPECT_NE(last.find("nothing more will be said"), std::string::npos) << last;
+  EXPECT_NE(last.find("no more messages will follow"), std::string::npos) << last;
 }
 
 }  // namespace

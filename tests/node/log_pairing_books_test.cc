@@ -43,30 +43,30 @@ TEST_F(LogPairingTest, AFewWithoutAPartnerAreAWarningMostOfThemAnError) {
   for (const std::int64_t seq : {0, 1, 3, 4, 5, 7, 8, 9}) Add(kRight, seq);
   for (const std::int64_t seq : {0, 1, 2, 3}) Add(kMask, seq);
   EXPECT_EQ(Said(),
-            "warning log.partners CAMERA_RIGHT: 2 of 10 left images have no message of their "
+            "warning log.partners CAMERA_RIGHT: 2 of 10 left images have no message with their "
             "number and session here, the first is 2\n"
-            "warning log.partners PERSON_MASK: 6 of 10 left images have no message of their number "
-            "and session here, the first is 4\n");
+            "warning log.partners PERSON_MASK: 6 of 10 left images have no message with their "
+            "number and session here, the first is 4\n");
 }
 
 TEST_F(LogPairingTest, MostRightImagesMissingIsAnError) {
   AddRange(kLeft, 0, 9);
   AddRange(kRight, 6, 9);
-  EXPECT_EQ(Said().substr(0, 119),
-            "error log.partners CAMERA_RIGHT: 6 of 10 left images have no message of their number "
-            "and session here, the first is 0: ");
+  EXPECT_EQ(Said().substr(0, 121),
+            "error log.partners CAMERA_RIGHT: 6 of 10 left images have no message with their "
+            "number and session here, the first is 0: ");
 }
 
 TEST_F(LogPairingTest, PartnersOfNoImageAreCounted) {
   AddRange(kLeft, 0, 9);
   AddRange(kRight, 2, 12);
   EXPECT_EQ(Said(),
-            "warning log.partners CAMERA_RIGHT: 2 of 10 left images have no message of their "
+            "warning log.partners CAMERA_RIGHT: 2 of 10 left images have no message with their "
             "number and session here, the first is 0\n"
             "warning log.partners CAMERA_RIGHT: 3 of 11 messages have a number that CAMERA_LEFT "
-            "has not\n");
+            "does not have\n");
   EXPECT_EQ(Said(true),
-            "warning log.partners CAMERA_RIGHT: 2 of 10 left images have no message of their "
+            "warning log.partners CAMERA_RIGHT: 2 of 10 left images have no message with their "
             "number and session here, the first is 0\n")
       << "they may come";
 }
@@ -76,15 +76,15 @@ TEST_F(LogPairingTest, TheNewestOfACutLogMayStillGetTheirPartners) {
   AddRange(kRight, 0, 29);
   EXPECT_EQ(Said(true), "");
   EXPECT_EQ(Said(false),
-            "warning log.partners CAMERA_RIGHT: 10 of 40 left images have no message of their "
+            "warning log.partners CAMERA_RIGHT: 10 of 40 left images have no message with their "
             "number and session here, the first is 30\n");
 }
 
 TEST_F(LogPairingTest, NumbersThatDifferAreExplainedByTimeOrElseByOrder) {
   const std::string none =
-      "error log.partners CAMERA_RIGHT: 10 of 10 left images have no message of their number and "
+      "error log.partners CAMERA_RIGHT: 10 of 10 left images have no message with their number and "
       "session here: ";
-  const std::string remedy = ": give every message of one image one number (seq)\n";
+  const std::string remedy = ": give all messages of one image the same number (seq)\n";
   AddRange(kLeft, 0, 9);
   for (std::int64_t seq = 0; seq < 10; ++seq) pairing_.Add(kRight, {TimeOf(seq), seq + 500, 1});
   EXPECT_EQ(Said(), none + "where capture times agree, its numbers are those of CAMERA_LEFT + 500" +
@@ -141,14 +141,14 @@ TEST_F(LogPairingTest, CaptureTimesThatDifferAreCountedFromTheFirstOn) {
   AddPairs({7000000, 7100033, 7200033, 7300033, 7400000}, &pairing_);
   EXPECT_EQ(Said(),
             "error log.utime CAMERA_RIGHT 1: has another capture time (7100033) than CAMERA_LEFT "
-            "of this number (7100000), and so have 3 of 5, by + 33 us: give every message of one "
-            "image one capture time\n");
+            "with this number (7100000), and so have 3 of 5, by + 33 us: give all messages of one "
+            "image the same capture time\n");
   AddPairs({7000000, 7099960, 7199960, 7300000, 7400000}, &pairing_);
   EXPECT_NE(Said().find("and so have 2 of 5, by - 40 us"), std::string::npos) << Said();
   AddPairs({7000000, 7100000, 7200000, 7300000, 7400007}, &pairing_);
   EXPECT_EQ(Said(),
             "error log.utime CAMERA_RIGHT 4: has another capture time (7400007) than CAMERA_LEFT "
-            "of this number (7400000)\n");
+            "with this number (7400000)\n");
 }
 
 TEST_F(LogPairingTest, AThousandfoldTimeIsOfAnotherUnit) {
@@ -187,7 +187,7 @@ TEST(LogChannelsBooksTest, BeyondAThousandNamesOnlyOursAreToldApart) {
   EXPECT_EQ(channels.num_messages("N999"), 1);
   EXPECT_EQ(channels.num_messages("STRANGER"), 0);
   EXPECT_EQ(channels.num_messages(kLeft), 2);
-  EXPECT_NE(channels.List().find(", 1 messages on still other channels"), std::string::npos);
+  EXPECT_NE(channels.List().find(", 1 messages on further channels"), std::string::npos);
 }
 
 TEST(LogChannelsBooksTest, TheShortestNameOfOthersIsMeant) {

@@ -133,7 +133,8 @@ TEST_F(LogRecorderTest, TheSummaryHasEveryChannelAndWhatIsMissing) {
   };
   EXPECT_EQ(line_of("CAMERA_LEFT"), "CAMERA_LEFT                    3 messages, 2 missing");
   EXPECT_EQ(line_of("STATUS"), "STATUS                         1 messages");
-  EXPECT_NE(text.find("\n1 messages no log can hold were left out\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\n1 messages that no log can hold were left out\n"), std::string::npos)
+      << text;
   EXPECT_EQ(line_of(options_.path).find(options_.path + ": 4 events, "), 0u) << text;
 }
 

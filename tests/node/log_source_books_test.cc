@@ -127,9 +127,10 @@ TEST_F(LogSourceBooksTest, TheRangeHoldsBothItsEnds) {
   std::vector<Entry> entries{{'C', 7, 0}};
   for (std::int64_t seq = 0; seq < 6; ++seq) entries.push_back({'L', 7, seq});
   entries.push_back({'C', 7, 5});
+  entries.push_back({'R', 7, 4});  // late, from behind what is not wanted any more
   Write(entries);
   LogSource source(path_, 2, 4);
-  EXPECT_EQ(Frames(&source), "C7.0 | L7.2 | L7.3 | L7.4 ");
+  EXPECT_EQ(Frames(&source), "C7.0 | L7.2 | L7.3 | L7.4 R7.4 ");
   LogSource none(path_, 6);
   EXPECT_EQ(Frames(&none), "C7.0 | C7.5 ") << "calibrations from before are kept";
 }
@@ -160,7 +161,7 @@ TEST_F(LogSourceBooksTest, WhatFitsToNothingAroundItIsLeftOut) {
     EXPECT_EQ(FramesOf({{'L', 7, 0}, {'L', 7, 1}, wrong, {'L', 7, 2}, {'L', 7, 3}}), expected)
         << wrong.session << " " << wrong.seq;
     EXPECT_EQ(FirstNote(),
-              "1 messages left out: session or image number fit to nothing around them");
+              "1 messages skipped: their session or image number does not fit their neighbours");
   }
 }
 
@@ -169,7 +170,8 @@ TEST_F(LogSourceBooksTest, ALaterOneThatIsTooFarAheadAgreesToNothing) {
   EXPECT_EQ(
       FramesOf({{'L', 7, 0}, {'L', 7, 9000}, {'L', 7, 9001 + kMost}, {'L', 7, 1}, {'L', 7, 2}}),
       "L7.0 | L7.1 | L7.2 ");
-  EXPECT_EQ(FirstNote(), "2 messages left out: session or image number fit to nothing around them");
+  EXPECT_EQ(FirstNote(),
+            "2 messages skipped: their session or image number does not fit their neighbours");
   EXPECT_EQ(FramesOf({{'L', 7, 0}, {'L', 7, 9000}, {'L', 7, 9000 + kMost}, {'L', 7, 1}}),
             "L7.0 | L7.9000 L7.1 ")
       << "the first two agree, the third agrees with nothing behind it";
@@ -212,7 +214,8 @@ TEST_F(LogSourceBooksTest, EightSessionsAreRemembered) {
   for (std::int64_t seq = 2; seq < 20; ++seq) entries.push_back({'L', 9, seq});
   const std::string text = FramesOf(entries);
   EXPECT_NE(text.find("| L9.0 | L9.1 | R2.1 | R9.1 | L9.2 |"), std::string::npos) << text;
-  EXPECT_EQ(FirstNote(), "1 messages left out: session or image number fit to nothing around them");
+  EXPECT_EQ(FirstNote(),
+            "1 messages skipped: their session or image number does not fit their neighbours");
 }
 
 TEST_F(LogSourceBooksTest, MessagesWithoutAHeaderAreCounted) {
@@ -229,7 +232,7 @@ TEST_F(LogSourceBooksTest, MessagesWithoutAHeaderAreCounted) {
   }
   LogSource source(path_);
   EXPECT_EQ(Frames(&source), "L7.0 ");
-  EXPECT_EQ(source.TakeNotes().at(0), path_ + ": 3 messages too short to have a header left out");
+  EXPECT_EQ(source.TakeNotes().at(0), path_ + ": 3 messages skipped: too short for a header");
 }
 
 // ---- The file ----

@@ -106,8 +106,8 @@ TEST_F(MapRecorderBooksTest, TimesThatDoNotGoOnAreSaidOnceASession) {
   EXPECT_EQ(said(), "");
   SendFrame(2, 1, 7001, &node);
   EXPECT_EQ(said(),
-            "times go back: image 2 is not later than image 1 (utime 7001 and 7001); the map has "
-            "such poses, the trajectory files leave them out\n");
+            "times go back: image 2 is not later than image 1 (utime 7001 and 7001); the map "
+            "contains such poses, the trajectory files omit them\n");
   SendFrame(3, 1, 5, &node);
   EXPECT_EQ(said(), "");
   SendFrame(0, 2, 3000, &node);

@@ -9,6 +9,7 @@
 #include "common/util/error.h"
 #include "processes/map_recorder/map_recorder_node.h"
 #include "processes/node/log/log_source.h"
+#include "processes/node/message/header.h"
 
 namespace airdos {
 namespace {
@@ -19,11 +20,7 @@ constexpr std::int64_t kSession = 42;
 
 template <class Message>
 Message Make(std::int64_t seq, std::int64_t session = kSession) {
-  Message message = {};
-  message.utime = 1000000 + 100000 * seq;
-  message.seq = seq;
-  message.session = session;
-  return message;
+  return MessageOf<Message>({1000000 + 100000 * seq, seq, session});
 }
 
 void SetIdentity(double orientation[4]) {

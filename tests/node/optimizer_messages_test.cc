@@ -238,9 +238,9 @@ FrameEstimate Estimate() {
   summary.num_people = 15;
   summary.num_rigidity = 16;
   summary.num_motion = 17;
-  summary.num_rigidity_eliminated = 18;
-  summary.num_motion_eliminated = 19;
-  summary.num_reprojection_eliminated = 20;
+  summary.num_rigidity_rejected = 18;
+  summary.num_motion_rejected = 19;
+  summary.num_reprojection_rejected = 20;
   summary.num_iterations = 21;
   summary.initial_cost = 22.5;
   summary.final_cost = 23.5;

@@ -13,6 +13,7 @@
 
 #include "common/util/digest.h"
 #include "common/util/error.h"
+#include "processes/node/message/header.h"
 #include "processes/optimizer/optimizer_messages.h"
 #include "tests/support/synthetic_scene.h"
 
@@ -43,11 +44,8 @@ SyntheticScene Scene(int num_frames) {
 
 template <class Message>
 Message WithHeader(const FrameInput& input) {
-  Message message{};
-  message.utime = static_cast<std::int64_t>(std::llround(input.time_s * 1e6));
-  message.seq = input.id.value;
-  message.session = 7;
-  return message;
+  return MessageOf<Message>(
+      {static_cast<std::int64_t>(std::llround(input.time_s * 1e6)), input.id.value, 7});
 }
 
 static_features_t Features(const FrameInput& input) {
@@ -240,6 +238,32 @@ TEST(OptimizerNodeTest, LargeUpdatesAreSplit) {
   EXPECT_EQ(parts.size(), 4U);
   EXPECT_EQ(num_landmarks, 9000);
   EXPECT_EQ(ToMapUpdates({1, 2, 3}, MapChanges()).size(), 1U);
+}
+
+TEST(OptimizerNodeTest, PartsDoNotOverlap) {
+  MapChanges changes;
+  std::vector<MapChanges::Landmark> repeated;
+  for (std::int64_t i = 0; i < 12; ++i) changes.frames.push_back({FrameId{i}, 0, Se3()});
+  for (std::int64_t i = 0; i < 3000; ++i) {
+    changes.landmarks.push_back({LandmarkId{i}, Eigen::Vector3d::Zero(), 0.1, 2});
+    changes.removed.push_back(LandmarkId{100000 + i});
+    repeated.push_back({LandmarkId{200000 + i}, Eigen::Vector3d::Zero(), 0.1, 2});
+  }
+  for (std::int64_t i = 0; i < 100; ++i) {
+    changes.humans.emplace_back();
+    changes.humans.back().id = HumanId{i};
+  }
+  const std::vector<map_update_t> parts = ToMapUpdates({1, 2, 3}, changes, repeated);
+  ASSERT_GT(parts.size(), 2U);
+  std::vector<std::int64_t> said;
+  for (const map_update_t& part : parts) {
+    for (const frame_pose_t& frame : part.frames) said.push_back(300000 + frame.seq);
+    for (const human_state_t& human : part.humans) said.push_back(400000 + human.track_id);
+    for (const auto& ids : {part.landmark_id, part.removed_landmark_id, part.repeated_landmark_id})
+      said.insert(said.end(), ids.begin(), ids.end());
+  }
+  EXPECT_EQ(said.size(), 12U + 3 * 3000U + 100U);
+  EXPECT_EQ(std::set<std::int64_t>(said.begin(), said.end()).size(), said.size()) << "each once";
 }
 
 TEST(OptimizerNodeTest, AFrameWithoutFeaturesIsPredicted) {

@@ -1,300 +1,271 @@
-// Each key of each process's configuration file sets its own field of the options and no other one.
+// Each process' table of options, against the structs that it binds, the file in
+// launch_scripts/config and what users may write: all that can be told of an option without running
+// anything.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
 #include <functional>
-#include <iomanip>
+#include <iterator>
 #include <map>
+#include <memory>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "common/config/config_reader.h"
-#include "processes/frontend/frontend_node.h"
-#include "processes/human_tracker/human_tracker_node.h"
+#include "common/config/option_pages.h"
+#include "common/util/error.h"
+#include "processes/frontend/frontend_options.h"
+#include "processes/human_tracker/human_tracker_options.h"
+#include "processes/map_recorder/map_recorder_options.h"
 #include "processes/optimizer/optimizer_options.h"
+#include "processes/stereo_player/player_options.h"
 
 namespace airdos {
 namespace {
 
-/// A key, another value than the file has, and the fields that get it.
-template <class Options>
-struct Wire {
-  std::string key;
-  double value;
-  std::vector<std::function<double(const Options&)>> fields;
+/// A table of options that live as long.
+struct Process {
+  std::shared_ptr<void> options;
+  OptionTable table;
 };
 
-ConfigReader FileOf(const std::string& process) {
-  return ConfigReader::FromFile(AIRDOS_SOURCE_DIR "/launch_scripts/config/" + process + ".yaml");
-}
-
-std::set<std::string> KeysOf(const std::string& process) {
-  std::istringstream lines(FileOf(process).Resolved());
-  std::set<std::string> keys;
-  for (std::string line; std::getline(lines, line);) keys.insert(line.substr(0, line.find(':')));
-  return keys;
-}
-
 template <class Options>
-std::vector<double> AllFields(const std::vector<Wire<Options>>& wires, const Options& options) {
-  std::vector<double> values;
-  for (const Wire<Options>& wire : wires) {
-    for (const auto& field : wire.fields) values.push_back(field(options));
+Process Make() {
+  auto options = std::make_shared<Options>();
+  OptionTable table = TableOf(options.get());
+  return {options, table};
+}
+
+const std::vector<std::function<Process()>>& Makers() {
+  static const std::vector<std::function<Process()>> makers{
+      Make<FrontendOptions>, Make<HumanTrackerOptions>, Make<OptimizerOptions>,
+      Make<MapRecorderOptions>, Make<PlayerOptions>};
+  return makers;
+}
+
+std::string TextOf(const std::string& path) {
+  std::ifstream file(AIRDOS_SOURCE_DIR "/" + path);
+  EXPECT_TRUE(file) << path;
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::string PathOf(const OptionTable& table) {
+  return "launch_scripts/config/" + table.name() + ".yaml";
+}
+
+ConfigReader FileOf(const OptionTable& table) {
+  return ConfigReader::FromFile(AIRDOS_SOURCE_DIR "/" + PathOf(table), table.renamed());
+}
+
+std::string MessageOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
   }
-  return values;
+  return "no error";
 }
 
-/// `text` is what stands for the value where it is no number.
-template <class Options>
-void ExpectWired(const std::string& process, Options (*read)(ConfigReader*),
-                 const std::vector<Wire<Options>>& wires,
-                 const std::map<std::string, std::string>& texts) {
-  std::set<std::string> keys;
-  ConfigReader plain = FileOf(process);
-  const Options as_configured = read(&plain);
-  const std::vector<double> before = AllFields(wires, as_configured);
-  std::size_t first = 0;
-  for (const Wire<Options>& wire : wires) {
-    SCOPED_TRACE(wire.key);
-    keys.insert(wire.key);
-    std::ostringstream text;
-    text << std::setprecision(17) << wire.value;
-    ConfigReader config = FileOf(process);
-    config.Override(wire.key + "=" + (texts.count(wire.key) > 0 ? texts.at(wire.key) : text.str()));
-    const std::vector<double> after = AllFields(wires, read(&config));
-    for (std::size_t i = 0; i < after.size(); ++i) {
-      const bool is_own = i >= first && i < first + wire.fields.size();
-      EXPECT_EQ(after[i], is_own ? wire.value : before[i]) << "field " << i;
-      if (is_own) {
-        EXPECT_NE(before[i], wire.value) << "the file has this value";
+std::string NumberText(double number) {
+  std::ostringstream text;
+  text.precision(17);
+  text << number;
+  return text.str();
+}
+
+/// Another value than the one now, allowed, and near to it.
+std::string OtherValue(const Option& option) {
+  const std::string now = option.value();
+  if (option.kind == Option::Kind::kSwitch) return now == "true" ? "false" : "true";
+  if (option.kind == Option::Kind::kChoice)
+    return option.words.front() == now ? option.words.back() : option.words.front();
+  if (option.kind == Option::Kind::kText || option.kind == Option::Kind::kWords) return "other";
+  if (option.kind == Option::Kind::kWholes) return NumberText(option.range->max);
+  const double number = std::stod(now);
+  double step = option.kind == Option::Kind::kWhole ? 1 : std::max(number / 16, 1.0 / 1024);
+  if (number + step > option.range->max) step = -step;
+  return NumberText(number + step);
+}
+
+/// The option read alone.
+std::string MessageOfReading(const Process& process, const Option& option,
+                             const std::string& value) {
+  ConfigReader config = FileOf(process.table);
+  config.Override(option.key + "=" + value);
+  return MessageOf([&] { option.read(&config); });
+}
+
+TEST(OptionsWiringTest, TheFileIsWhatItsTableWrites) {
+  for (const auto& make : Makers()) {
+    const Process process = make();
+    EXPECT_EQ(TextOf(PathOf(process.table)), ConfigFileText(process.table))
+        << "after a change of the table: airdos-<process> --print-config > "
+        << PathOf(process.table);
+  }
+}
+
+TEST(OptionsWiringTest, EachKeySetsItsOwnMembersAndNoOther) {
+  for (const auto& make : Makers()) {
+    const Process before = make();
+    for (std::size_t i = 0; i < before.table.options().size(); ++i) {
+      const Option& option = before.table.options()[i];
+      SCOPED_TRACE(option.key);
+      const Process after = make();
+      ConfigReader config = FileOf(before.table);
+      const std::string other = OtherValue(option);
+      config.Override(option.key + "=" + other);
+      after.table.Read(&config);
+      EXPECT_NO_THROW(config.Finish());
+      for (std::size_t k = 0; k < before.table.options().size(); ++k) {
+        const std::string value = after.table.options()[k].value();
+        if (k != i) {
+          EXPECT_EQ(value, before.table.options()[k].value()) << before.table.options()[k].key;
+        } else if (option.kind == Option::Kind::kNumber) {
+          EXPECT_EQ(std::stod(value), std::stod(other));
+        } else {
+          EXPECT_EQ(value, other);
+        }
       }
     }
-    first += wire.fields.size();
   }
-  EXPECT_EQ(keys, KeysOf(process)) << "a key without a line in this test";
 }
 
-#define FIELD(Options, field) \
-  [](const Options& o) -> double { return static_cast<double>(o.field); }
-
-TEST(OptionsWiringTest, Frontend) {
-  using O = FrontendOptions;
-  using W = Wire<O>;
-  const std::vector<W> wires = {
-      W{"masks.use", 0, {FIELD(O, use_masks)}},
-      W{"masks.dilation_px", 11, {FIELD(O, mask_dilation_px)}},
-      W{"feedback.lag_frames", 7, {FIELD(O, feedback_lag)}},
-      W{"features.num_levels", 5, {FIELD(O, odometry.extractor.num_levels)}},
-      W{"features.fast_threshold", 13, {FIELD(O, odometry.extractor.fast_threshold)}},
-      W{"features.cell_size_px", 37, {FIELD(O, odometry.extractor.cell_size_px)}},
-      W{"features.max_per_cell", 9, {FIELD(O, odometry.extractor.max_features_per_cell)}},
-      W{"stereo.min_depth_m", 0.625, {FIELD(O, odometry.stereo.min_depth_m)}},
-      W{"stereo.min_disparity_px", 0.875, {FIELD(O, odometry.stereo.min_disparity_px)}},
-      W{"stereo.max_row_error_px", 1.75, {FIELD(O, odometry.stereo.max_row_error_px)}},
-      W{"stereo.max_hamming_bits", 71, {FIELD(O, odometry.stereo.max_hamming)}},
-      W{"stereo.min_correlation", 0.9375, {FIELD(O, odometry.stereo.min_correlation)}},
-      W{"stereo.rich_observations", 151, {FIELD(O, odometry.rich_observations)}},
-      W{"stereo.rich_min_correlation", 0.96875, {FIELD(O, odometry.rich_min_correlation)}},
-      W{"map.max_landmarks", 6001, {FIELD(O, odometry.map.max_landmarks)}},
-      W{"map.max_frames_unconfirmed", 17, {FIELD(O, odometry.map.max_frames_unconfirmed)}},
-      W{"map.min_found_ratio", 0.1875, {FIELD(O, odometry.map.min_found_ratio)}},
-      W{"tracking.wide_radius_px", 31, {FIELD(O, odometry.wide_radius_px)}},
-      W{"tracking.wide_max_hamming_bits", 67, {FIELD(O, odometry.wide_max_hamming)}},
-      W{"tracking.narrow_max_hamming_bits", 93, {FIELD(O, odometry.narrow_max_hamming)}},
-      W{"tracking.min_inliers_tracking", 23, {FIELD(O, odometry.min_inliers_tracking)}},
-      W{"tracking.min_inliers_weak", 3, {FIELD(O, odometry.min_inliers_weak)}},
-      W{"tracking.min_correlation", 0.8125, {FIELD(O, odometry.min_correlation)}},
-      W{"tracking.aligned_sigma_px", 0.21875, {FIELD(O, odometry.aligned_sigma_px)}},
-      W{"tracking.corner_sigma_px", 0.75, {FIELD(O, odometry.corner_sigma_px)}},
-      W{"tracking.max_observations", 301, {FIELD(O, odometry.max_observations)}},
-      W{"tracking.observation_cell_px", 19, {FIELD(O, odometry.observation_cell_px)}},
-      W{"motion.linear_start_m_s2", 5.5, {FIELD(O, odometry.motion.linear_start_m_s2)}},
-      W{"motion.linear_floor_m_s2", 3.25, {FIELD(O, odometry.motion.linear_floor_m_s2)}},
-      W{"motion.linear_ceiling_m_s2", 33, {FIELD(O, odometry.motion.linear_ceiling_m_s2)}},
-      W{"motion.angular_start_rad_s2", 10.5, {FIELD(O, odometry.motion.angular_start_rad_s2)}},
-      W{"motion.angular_floor_rad_s2", 3.5, {FIELD(O, odometry.motion.angular_floor_rad_s2)}},
-      W{"motion.angular_ceiling_rad_s2", 53, {FIELD(O, odometry.motion.angular_ceiling_rad_s2)}},
-      W{"motion.initial_speed_m_s", 2.25, {FIELD(O, odometry.motion.initial_speed_m_s)}},
-      W{"motion.initial_turn_rad_s", 1.125, {FIELD(O, odometry.motion.initial_turn_rad_s)}},
-      W{"motion.memory_s", 3.75, {FIELD(O, odometry.motion.memory_s)}},
-      W{"people.use", 0, {FIELD(O, use_people)}},
-      W{"people.min_keypoint_confidence", 0.125, {FIELD(O, min_keypoint_confidence)}},
-      W{"people.max_static", 14, {FIELD(O, odometry.max_static_for_people)}},
-      W{"people.acceleration_m_s2", 2.875, {FIELD(O, odometry.people.acceleration_m_s2)}},
-      W{"people.initial_speed_m_s", 1.25, {FIELD(O, odometry.people.initial_speed_m_s)}},
-      W{"people.wobble_m", 0.03125, {FIELD(O, odometry.people.wobble_m)}},
-      W{"people.max_joint_sigmas", 4.25, {FIELD(O, odometry.people.max_joint_sigmas)}},
-      W{"people.max_missed_frames", 6, {FIELD(O, odometry.people.max_missed_frames)}},
-      W{"people.min_seen_frames", 2, {FIELD(O, odometry.people.min_seen_frames)}},
-  };
-  ExpectWired("frontend", ReadFrontendOptions, wires,
-              {{"masks.use", "false"}, {"people.use", "false"}});
+TEST(OptionsWiringTest, EachKeyStandsOnceAndSoDoesEachMember) {
+  for (const auto& make : Makers()) {
+    std::set<std::string> keys;
+    std::set<const void*> members;
+    const Process process = make();
+    for (const Option& option : process.table.options()) {
+      EXPECT_TRUE(keys.insert(option.key).second) << option.key;
+      for (const void* member : option.members)
+        EXPECT_TRUE(members.insert(member).second) << option.key << ": has another one's member";
+      for (const std::string& help : option.help) EXPECT_NE(help, "") << option.key;
+    }
+  }
 }
 
-std::vector<Wire<HumanTrackerOptions>> JointsAndPairing() {
-  using O = HumanTrackerOptions;
-  return {
-      {"keypoints.min_confidence",
-       0.125,
-       {FIELD(O, matcher.min_confidence), FIELD(O, triangulator.min_confidence),
-        FIELD(O, track.min_confidence)}},
-      {"keypoints.sigma_min_px",
-       0.875,
-       {FIELD(O, matcher.noise.min_px), FIELD(O, triangulator.noise.min_px),
-        FIELD(O, track.noise.min_px)}},
-      {"keypoints.sigma_per_height",
-       0.0078125,
-       {FIELD(O, matcher.noise.per_height), FIELD(O, triangulator.noise.per_height),
-        FIELD(O, track.noise.per_height)}},
-      {"keypoints.full_confidence",
-       0.8125,
-       {FIELD(O, matcher.noise.full_confidence), FIELD(O, triangulator.noise.full_confidence),
-        FIELD(O, track.noise.full_confidence)}},
-      {"keypoints.sigma_per_confidence",
-       3.5,
-       {FIELD(O, matcher.noise.per_confidence), FIELD(O, triangulator.noise.per_confidence),
-        FIELD(O, track.noise.per_confidence)}},
-      {"keypoints.sigma_max_factor",
-       4.5,
-       {FIELD(O, matcher.noise.max_factor), FIELD(O, triangulator.noise.max_factor),
-        FIELD(O, track.noise.max_factor)}},
-      {"range.min_depth_m",
-       0.625,
-       {FIELD(O, matcher.min_depth_m), FIELD(O, triangulator.min_depth_m)}},
-      {"range.max_depth_m",
-       41,
-       {FIELD(O, matcher.max_depth_m), FIELD(O, triangulator.max_depth_m)}},
-      {"pairing.min_joints", 5, {FIELD(O, matcher.min_joints)}},
-      {"pairing.max_joint_cost", 8.5, {FIELD(O, matcher.max_joint_cost)}},
-      {"pairing.gate", 3.25, {FIELD(O, matcher.gate)}},
-      {"pairing.body_extent_m", 0.1875, {FIELD(O, matcher.body_extent_m)}},
-      {"joints.max_row_error", 4.25, {FIELD(O, triangulator.max_row_error)}},
-      {"joints.body_extent_m", 0.3125, {FIELD(O, triangulator.body_extent_m)}},
-      {"joints.max_extent_error", 3.625, {FIELD(O, triangulator.max_extent_error)}},
-      {"joints.max_limb_ratio", 1.625, {FIELD(O, triangulator.max_limb_ratio)}},
-      {"joints.min_limb_ratio", 0.375, {FIELD(O, triangulator.min_limb_ratio)}},
-      {"joints.limb_sigmas", 3.125, {FIELD(O, triangulator.limb_sigmas)}},
-      {"joints.refine", 0, {FIELD(O, triangulator.is_refined)}},
-      {"joints.refined_sigma_px", 0.4375, {FIELD(O, triangulator.refined_sigma_px)}},
-      {"joints.surface_depth_m", 0.0625, {FIELD(O, triangulator.surface_depth_m)}},
-      {"joints.min_refined_confidence", 0.46875, {FIELD(O, triangulator.min_refined_confidence)}},
-      {"joints.patch_per_height", 0.03125, {FIELD(O, triangulator.refiner.patch_per_height)}},
-      {"joints.min_correlation", 0.71875, {FIELD(O, triangulator.refiner.min_correlation)}},
-  };
+TEST(OptionsWiringTest, TheBoundsAreAllowedAndWhatIsBeyondIsRefused) {
+  for (const auto& make : Makers()) {
+    const Process process = make();
+    for (const Option& option : process.table.options()) {
+      SCOPED_TRACE(option.key);
+      std::vector<std::string> good, bad;
+      if (option.range) {
+        const auto [min, max] = *option.range;
+        good = {NumberText(min), NumberText(max)};
+        const bool is_whole = option.kind != Option::Kind::kNumber;
+        const double below = is_whole ? min - 1 : min > 0 ? min * 0.999 : -1e-3;
+        bad = {NumberText(below), NumberText(is_whole ? max + 1 : max * 1.001), "nan", "many"};
+        if (is_whole) bad.push_back(NumberText(min + 0.5));
+      } else if (option.kind == Option::Kind::kChoice) {
+        good = option.words;
+        bad = {option.words.front() + "x", "0"};
+      } else if (option.kind == Option::Kind::kSwitch) {
+        good = {"true", "false"};
+        bad = {"2", "yes"};
+      }
+      for (const std::string& value : good)
+        EXPECT_EQ(MessageOfReading(process, option, value), "no error");
+      for (const std::string& value : bad) {
+        const std::string message = MessageOfReading(process, option, value);
+        EXPECT_NE(message.find("key '" + option.key + "' with value '" + value + "': must "),
+                  std::string::npos)
+            << message;
+      }
+    }
+  }
 }
 
-TEST(OptionsWiringTest, HumanTracker) {
-  using O = HumanTrackerOptions;
-  using W = Wire<O>;
-  std::vector<W> wires = JointsAndPairing();
-  const std::vector<W> tracking = {
-      W{"flow.window_px", 15, {FIELD(O, flow.window_px)}},
-      W{"flow.num_levels", 3, {FIELD(O, flow.num_levels)}},
-      W{"flow.max_return_error_px", 1.5, {FIELD(O, flow.max_return_error_px)}},
-      W{"tracking.gate", 12.5, {FIELD(O, gate)}},
-      W{"tracking.left_only_gate", 6.5, {FIELD(O, left_only_gate)}},
-      W{"tracking.motion_sigma", 0.140625, {FIELD(O, track.motion_sigma)}},
-      W{"tracking.motion_sigma_growth", 0.0234375, {FIELD(O, track.motion_sigma_growth)}},
-      W{"tracking.max_motion", 0.65625, {FIELD(O, track.max_motion)}},
-      W{"tracking.max_motion_growth", 0.046875, {FIELD(O, track.max_motion_growth)}},
-      W{"tracking.depth_sigma", 0.109375, {FIELD(O, track.depth_sigma)}},
-      W{"tracking.appearance_sigma", 0.28125, {FIELD(O, track.appearance_sigma)}},
-      W{"tracking.max_missed_frames", 11, {FIELD(O, max_missed_frames)}},
-      W{"tracking.min_seen", 2, {FIELD(O, min_seen_to_report)}},
-      W{"tracking.min_joints", 7, {FIELD(O, min_joints)}},
-      W{"tracking.use_left_only", 0, {FIELD(O, use_left_only)}},
-      W{"tracking.max_carried_frames", 9, {FIELD(O, max_carried_frames)}},
-      W{"tracking.min_swap_gain", 21, {FIELD(O, min_swap_gain)}},
-      W{"tracking.min_swap_gain_doubtful", 2.75, {FIELD(O, min_swap_gain_doubtful)}},
-      W{"tracking.use_shift_vote", 0, {FIELD(O, use_shift_vote)}},
-  };
-  wires.insert(wires.end(), tracking.begin(), tracking.end());
-  ExpectWired("human_tracker", ReadHumanTrackerOptions, wires,
-              {{"joints.refine", "false"},
-               {"tracking.use_left_only", "false"},
-               {"tracking.use_shift_vote", "false"}});
+TEST(OptionsWiringTest, AKeyOfAnEarlierVersionIsAnsweredWithTheNewOne) {
+  std::size_t num_renamed = 0;
+  for (const auto& make : Makers()) {
+    const Process process = make();
+    std::set<std::string> keys;
+    for (const Option& option : process.table.options()) keys.insert(option.key);
+    for (const auto& [old, now] : process.table.renamed()) {
+      EXPECT_EQ(keys.count(old), 0u) << old;
+      EXPECT_EQ(keys.count(now), 1u) << now;
+      const std::string expected = "key '" + old + "' is called '" + now + "' now";
+      ConfigReader config = FileOf(process.table);
+      EXPECT_EQ(MessageOf([&, key = old] { config.Override(key + "=1"); }),
+                AIRDOS_SOURCE_DIR "/" + PathOf(process.table) + ": " + expected);
+      const std::string text = ConfigFileText(process.table) + old + ": 1\n";
+      EXPECT_EQ(MessageOf([&] { ConfigReader::FromString(text, "old", process.table.renamed()); }),
+                "old: " + expected);
+      ++num_renamed;
+    }
+  }
+  EXPECT_EQ(num_renamed, 21u);
 }
 
-std::vector<Wire<OptimizerOptions>> PeopleOfTheOptimizer() {
-  using O = OptimizerOptions;
-  return {
-      {"people.rigidity", 0, {FIELD(O, window.bundle.use_rigidity)}},
-      {"people.motion", 0, {FIELD(O, window.bundle.use_motion)}},
-      {"people.motion_form", 2, {FIELD(O, window.bundle.motion_form)}},
-      {"people.window_frames", 7, {FIELD(O, window.people.window_frames)}},
-      {"people.forget_after_frames", 101, {FIELD(O, window.people.forget_after_frames)}},
-      {"people.min_disparity_px", 0.5625, {FIELD(O, window.people.min_disparity_px)}},
-      {"people.max_depth_m", 61, {FIELD(O, window.people.max_depth_m)}},
-      {"people.huber", 2.125, {FIELD(O, window.bundle.huber_dynamic)}},
-      {"people.rigidity_sigma_m", 0.0234375, {FIELD(O, window.bundle.rigidity_sigma_m)}},
-      {"people.segment_length_sigma_m",
-       0.01171875,
-       {FIELD(O, window.bundle.segment_length_sigma_m)}},
-      {"people.motion_sigma_m", 0.0390625, {FIELD(O, window.bundle.motion_sigma_m)}},
-      {"people.learn_track_noise", 0, {FIELD(O, window.learn_track_noise)}},
-      {"people.motion_max_gap_s", 0.53125, {FIELD(O, window.bundle.motion_max_gap_s)}},
-      {"people.person_acceleration_m_s2", 2.25, {FIELD(O, window.bundle.person_acceleration_m_s2)}},
-      {"people.person_speed_m_s", 1.0625, {FIELD(O, window.bundle.person_speed_m_s)}},
-      {"people.free_rotation_sigma_rad",
-       0.09375,
-       {FIELD(O, window.bundle.free_rotation_sigma_rad)}},
-      {"people.eliminate_joint", 4.125, {FIELD(O, window.bundle.eliminate_joint)}},
-      {"people.eliminate_rigidity", 4.375, {FIELD(O, window.bundle.eliminate_rigidity)}},
-      {"people.eliminate_motion", 4.625, {FIELD(O, window.bundle.eliminate_motion)}},
-      {"trust.min_static_observations", 16, {FIELD(O, window.trust.min_static_observations)}},
-      {"trust.min_motion_factors", 27, {FIELD(O, window.trust.min_motion_factors)}},
-      {"trust.max_eliminated_share", 0.28125, {FIELD(O, window.trust.max_eliminated_share)}},
-      {"trust.max_relative_sigma", 0.84375, {FIELD(O, window.trust.max_relative_sigma)}},
-      {"trust.max_shift_chi2", 23.5, {FIELD(O, window.trust.max_shift_chi2)}},
-  };
+std::set<std::string> WordsOf(const std::string& text) {
+  std::set<std::string> words;
+  std::string word;
+  for (const char letter : text + "_") {
+    if (letter != '_' && letter != '.') {
+      word += letter;
+    } else if (!word.empty()) {
+      words.insert(word);
+      word.clear();
+    }
+  }
+  return words;
 }
 
-TEST(OptionsWiringTest, Optimizer) {
-  using O = OptimizerOptions;
-  using W = Wire<O>;
-  std::vector<W> wires = PeopleOfTheOptimizer();
-  const std::vector<W> window = {
-      W{"window.frames", 13, {FIELD(O, window.map.window_frames)}},
-      W{"window.max_fixed_key_frames", 9, {FIELD(O, window.map.max_fixed_key_frames)}},
-      W{"window.min_shared_landmarks", 18, {FIELD(O, window.map.min_shared_landmarks)}},
-      W{"window.key_frame_max_shared", 0.625, {FIELD(O, window.map.key_frame_max_shared)}},
-      W{"window.key_frame_interval", 6, {FIELD(O, window.map.key_frame_interval)}},
-      W{"window.max_key_frames", 63, {FIELD(O, window.map.max_key_frames)}},
-      W{"window.forget_after_frames", 203, {FIELD(O, window.map.forget_after_frames)}},
-      W{"window.min_disparity_px", 0.46875, {FIELD(O, window.map.min_disparity_px)}},
-      W{"window.max_eliminations", 3, {FIELD(O, window.map.max_eliminations)}},
-      W{"solver.method", 1, {FIELD(O, window.bundle.solver)}},
-      W{"solver.max_iterations", 10, {FIELD(O, window.bundle.max_iterations)}},
-      W{"solver.max_iterations_after_elimination",
-        5,
-        {FIELD(O, window.bundle.max_iterations_after_elimination)}},
-      W{"solver.function_tolerance", 0.00390625, {FIELD(O, window.bundle.function_tolerance)}},
-      W{"solver.huber_static", 2.375, {FIELD(O, window.bundle.huber_static)}},
-      W{"solver.eliminate_static", 4.875, {FIELD(O, window.bundle.eliminate_static)}},
-      W{"camera_motion.use_acceleration", 0, {FIELD(O, window.camera_motion.use_acceleration)}},
-      W{"camera_motion.sigma_factor", 0.6875, {FIELD(O, window.camera_motion.sigma_factor)}},
-      W{"output.publish_moved_m", 0.001953125, {FIELD(O, window.publish_moved_m)}},
-  };
-  wires.insert(wires.end(), window.begin(), window.end());
-  // Whether people are looked at follows from their mode: "on" is 2.
-  wires.push_back(W{"people.mode", 0, {FIELD(O, people), FIELD(O, window.bundle.use_people)}});
-  ExpectWired("optimizer", ReadOptimizerOptions, wires,
-              {{"people.mode", "off"},
-               {"people.rigidity", "false"},
-               {"people.motion", "false"},
-               {"people.motion_form", "se3_parts"},
-               {"people.learn_track_noise", "false"},
-               {"solver.method", "ceres"},
-               {"camera_motion.use_acceleration", "false"}});
+/// Key and member of every line that adds an option, as the source says them.
+std::vector<std::pair<std::string, std::string>> LinesOf(const std::string& path) {
+  const std::string text = TextOf(path);
+  const std::regex line(
+      R"re(Add(?:Shared|Choice<\w+>)?\(\s*"(\w+\.\w+)",\s*(?:noise\(|\{)?&([\w:.>-]+))re");
+  std::vector<std::pair<std::string, std::string>> lines;
+  for (std::sregex_iterator it(text.begin(), text.end(), line), end; it != end; ++it) {
+    const std::string member = (*it)[2];
+    lines.emplace_back((*it)[1], member.substr(member.find_last_of(".>:") + 1));
+  }
+  return lines;
+}
+
+// What two members of one default would leave unseen if they were exchanged: every word of a
+// member's name is in its key.
+TEST(OptionsWiringTest, KeysSayTheirMembersNames) {
+  const std::map<std::string, std::string> others = {
+      {"masks.dilation_px", "mask_dilation_px"},
+      {"people.max_static", "max_static_for_people"},
+      {"tracking.min_seen", "min_seen_to_report"},
+      {"joints.refine", "is_refined"},
+      {"people.rigidity", "use_rigidity"},
+      {"people.motion", "use_motion"},
+      {"people.huber_sigmas", "huber_dynamic_sigmas"}};
+  const std::string paths[] = {
+      "frontend/frontend_options.cc", "human_tracker/human_tracker_options.cc",
+      "optimizer/optimizer_options.cc", "map_recorder/map_recorder_options.cc",
+      "stereo_player/player_options.cc"};
+  for (std::size_t i = 0; i < Makers().size(); ++i) {
+    const auto lines = LinesOf("processes/" + paths[i]);
+    EXPECT_EQ(lines.size(), Makers()[i]().table.options().size()) << paths[i];
+    for (const auto& [key, member] : lines) {
+      const auto other = others.find(key);
+      if (other != others.end()) {
+        EXPECT_EQ(member, other->second) << key;
+        continue;
+      }
+      const std::set<std::string> in_key = WordsOf(key), in_member = WordsOf(member);
+      EXPECT_TRUE(std::includes(in_key.begin(), in_key.end(), in_member.begin(), in_member.end()))
+          << key << " sets " << member;
+    }
+  }
 }
 
 TEST(OptionsWiringTest, TheOptimizerLooksAtPeopleOnlyWhereTheyAreOn) {
   const std::pair<const char*, PeopleMode> modes[] = {
       {"off", PeopleMode::kOff}, {"mask_only", PeopleMode::kMaskOnly}, {"on", PeopleMode::kOn}};
+  const Process optimizer = Make<OptimizerOptions>();
   for (const auto& [text, mode] : modes) {
-    ConfigReader config = FileOf("optimizer");
+    ConfigReader config = FileOf(optimizer.table);
     config.Override(std::string("people.mode=") + text);
     const OptimizerOptions options = ReadOptimizerOptions(&config);
     EXPECT_EQ(options.people, mode);
@@ -305,10 +276,29 @@ TEST(OptionsWiringTest, TheOptimizerLooksAtPeopleOnlyWhereTheyAreOn) {
       {"velocity_track", MotionForm::kVelocityTrack},
       {"se3_parts", MotionForm::kSe3Parts}};
   for (const auto& [text, form] : forms) {
-    ConfigReader config = FileOf("optimizer");
+    ConfigReader config = FileOf(optimizer.table);
     config.Override(std::string("people.motion_form=") + text);
     EXPECT_EQ(ReadOptimizerOptions(&config).window.bundle.motion_form, form);
   }
+}
+
+TEST(OptionsWiringTest, OneValueForAllStepsThatNeedIt) {
+  const Process tracker = Make<HumanTrackerOptions>();
+  ConfigReader config = FileOf(tracker.table);
+  for (const char* text : {"keypoints.min_confidence=0.125", "keypoints.sigma_min_px=0.875",
+                           "range.min_depth_m=0.625", "range.max_depth_m=41"})
+    config.Override(text);
+  const HumanTrackerOptions options = ReadHumanTrackerOptions(&config);
+  EXPECT_EQ(options.matcher.min_confidence, 0.125);
+  EXPECT_EQ(options.triangulator.min_confidence, 0.125);
+  EXPECT_EQ(options.track.min_confidence, 0.125);
+  EXPECT_EQ(options.matcher.noise.min_px, 0.875);
+  EXPECT_EQ(options.triangulator.noise.min_px, 0.875);
+  EXPECT_EQ(options.track.noise.min_px, 0.875);
+  EXPECT_EQ(options.matcher.min_depth_m, 0.625);
+  EXPECT_EQ(options.triangulator.min_depth_m, 0.625);
+  EXPECT_EQ(options.matcher.max_depth_m, 41);
+  EXPECT_EQ(options.triangulator.max_depth_m, 41);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ using Frames = std::vector<std::vector<Envelope>>;
 class SlowNode : public TextNode {
  public:
   template <class... Arguments>
-  SlowNode(std::uint64_t seed, Arguments&&... arguments)
+  explicit SlowNode(std::uint64_t seed, Arguments&&... arguments)
       : TextNode(std::forward<Arguments>(arguments)...), random_(seed) {}
 
  protected:

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 #include <string>
@@ -14,6 +15,7 @@
 #include "airdos/pose_t.hpp"
 #include "airdos/stereo_calibration_t.hpp"
 #include "common/util/error.h"
+#include "processes/node/live/process_usage.h"
 #include "processes/node/log/event_log.h"
 #include "processes/node/log/log_source.h"
 #include "processes/node/message/channels.h"
@@ -260,11 +262,44 @@ class TwoFrames : public FrameSource {
   int num_ = 0;
 };
 
+/// Four frames of one large message each, all taken at once.
+class LargeFrames : public FrameSource {
+ public:
+  static constexpr std::size_t kBytes = 1000000;
+  std::vector<Envelope> NextFrame() override {
+    if (num_ == 4) return {};
+    frame_done_t message = TextMessage(num_++, std::string(kBytes, 'x'));
+    message.utime = 0;
+    return {{"LARGE", Encode(message)}};
+  }
+  double fraction_done() const override { return 0; }
+  std::vector<std::string> TakeNotes() override { return {}; }
+
+ private:
+  std::int64_t num_ = 0;
+};
+
+TEST(PlayerLoopTest, GoesNoFasterThanReceiversBuffersAreEmptied) {
+  constexpr double kMaxBytesPerSecond = 30e6;
+  PlayerOptions options;
+  options.pace = PlayerPace::kRealtime;
+  LcmTransport transport("memq://");
+  std::ostringstream said;
+  const ProcessLog log("player", LogLevel::kInfo, LogStyle::kJournal, &said, nullptr);
+  PlayerLoop loop(
+      options, [](int) { return std::make_unique<LargeFrames>(); }, &transport, &log);
+  const double start_s = SteadyClock_s();
+  loop.Run();
+  EXPECT_GE(SteadyClock_s() - start_s, 4 * LargeFrames::kBytes / kMaxBytesPerSecond);
+  EXPECT_NE(said.str().find("published 4 frames"), std::string::npos) << said.str();
+}
+
 TEST_F(PlayerFilesTest, EventsHaveTheTimeOfTheNewestMessageOfTheirFrame) {
   TwoFrames source;
   std::ostringstream said;
   const std::string path = folder_ + "/out.lcm";
-  WriteLog(path, &source, &said);
+  WriteLog(path, &source,
+           ProcessLog("player", LogLevel::kInfo, LogStyle::kJournal, &said, nullptr));
   EventLogReader reader(path);
   std::string text;
   while (const auto event = reader.Next()) {
@@ -273,7 +308,7 @@ TEST_F(PlayerFilesTest, EventsHaveTheTimeOfTheNewestMessageOfTheirFrame) {
   EXPECT_EQ(text, "0A3000 1B3000 2B4000 3A4000 ");
   // Of each event 28 bytes of head and one of name, then 8 + 24 and the text with its length and
   // end.
-  EXPECT_EQ(said.str(), "airdos-stereo-player: " + path + ": 4 messages, " +
+  EXPECT_EQ(said.str(), "<6>" + path + ": 4 messages, " +
                             std::to_string(4 * (28 + 1 + 8 + 24 + 4 + 2)) + " bytes\n");
 }
 

@@ -74,6 +74,20 @@ TEST_F(ReplaySetupTest, TheLastWordIsThatOfTheOverrides) {
   EXPECT_THROW(MakeReplayNodes(setup_), InputError);
 }
 
+TEST_F(ReplaySetupTest, AKeyOfAnEarlierVersionIsAnsweredWithTheNewOne) {
+  for (const char* text : {"people.huber=2", "optimizer:people.huber=2"}) {
+    setup_.overrides = {text};
+    try {
+      MakeReplayNodes(setup_);
+      ADD_FAILURE() << text;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(), setup_.config_dir +
+                                  "/optimizer.yaml: key 'people.huber' is called "
+                                  "'people.huber_sigmas' now");
+    }
+  }
+}
+
 TEST_F(ReplaySetupTest, WithoutAWordTheFilesDecide) {
   const FrontendOptions options = Frontend();
   ConfigReader config = ConfigReader::FromFile(setup_.config_dir + "/frontend.yaml");

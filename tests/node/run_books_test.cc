@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -72,8 +73,7 @@ TEST_F(CheckBeforeRunTest, AWarningNamesItsPlaceAndTheRunGoesOn) {
 
 TEST_F(CheckBeforeRunTest, TheFirstErrorIsSaidAndHowManyMoreThereAre) {
   WriteLog({channel::kCalibration});
-  const std::string end =
-      "; 'airdos-check " + Log() + "' says more, --no-check goes on all the same";
+  const std::string end = "; 'airdos-check " + Log() + "' says more; --no-check continues anyway";
   EXPECT_EQ(Check(Log()), "THROWN: " + Log() +
                               ": no usable CALIBRATION: nothing can be measured; publish it once a "
                               "second" +
@@ -108,7 +108,8 @@ TEST_F(CheckBeforeRunTest, TheCalibrationThatIsAskedForIsUsed) {
   EXPECT_NE(without.find("calib.json: is not there"), std::string::npos) << without;
   // It is there, and of another size.
   const std::string with = Check(Data(), kPublicCalibration);
-  EXPECT_NE(with.find("with 320 x 192 px is not of the public set (640 x 360)"), std::string::npos)
+  EXPECT_NE(with.find("with 320 x 192 px is not that of the public data set (640 x 360)"),
+            std::string::npos)
       << with;
 }
 

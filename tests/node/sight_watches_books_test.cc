@@ -54,7 +54,7 @@ TEST(InputWatchBooksTest, TimesAreJudgedOnce) {
   InputWatch watch;
   for (std::int64_t k = 0; k < 300; ++k) watch.AddTime(5000 + 40 * k);
   EXPECT_EQ(Joined(&watch),
-            "the left images' utime says that they are 4e-05 s apart (median): it is in ms; utime "
+            "according to utime, the left images are 4e-05 s apart (median): it is in ms; utime "
             "must be the capture time in us\n");
 }
 
@@ -86,9 +86,19 @@ TEST(InputWatchBooksTest, OnlyWhatIsSeenAndOnlySinceTheLastLookCountsForMasks) {
   EXPECT_EQ(Joined(&watch), "") << "the 140 before were judged";
   for (int k = 100; k < 600; ++k) watch.AddMask(empty, {Person(1)});
   EXPECT_EQ(Joined(&watch),
-            "the person masks do not mark people: 0 of 100 keypoints lie on them; are they "
-            "inverted, empty or of another camera?\n")
+            "the person masks do not mark people: 0 of 100 keypoints are on them; are they "
+            "inverted, empty or from another camera?\n")
       << "once";
+}
+
+TEST(InputWatchBooksTest, AKeypointLiesOnAMaskByItsColumnAndRow) {
+  cv::Mat marked = cv::Mat::zeros(192, 320, CV_8UC1);
+  marked(cv::Rect(145, 55, 10, 10)) = cv::Scalar(255);
+  BodyKeypoints person;
+  person.fill({150, 60, 0.9});
+  InputWatch watch;
+  for (int k = 0; k < 10; ++k) watch.AddMask(marked, {person});
+  EXPECT_EQ(Joined(&watch), "");
 }
 
 // ---- People ----

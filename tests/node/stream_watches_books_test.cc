@@ -57,8 +57,8 @@ TEST_F(PartnerWatchTest, OneInFiveMayBeLost) {
   EXPECT_EQ(said_, "");
   for (int i = 100; i < 200; ++i) Add(i % 4 != 0);
   EXPECT_EQ(said_,
-            "200: no right image came for 25 of 100 left images: CAMERA_RIGHT leaves images out, "
-            "or loses them on its way; airdos-doctor looks at the network\n");
+            "200: no right image came for 25 of 100 left images: CAMERA_RIGHT skips images, or "
+            "loses them in transit; airdos-doctor checks the network\n");
   AddMany(200, false);
   EXPECT_EQ(said_.find('\n'), said_.size() - 1) << "said once";
 }
@@ -69,8 +69,8 @@ TEST_F(PartnerWatchTest, EachLookIsOfTheFramesSinceTheOneBefore) {
   AddMany(80, true);
   AddMany(20, false);
   EXPECT_EQ(said_,
-            "200: no right image came for 20 of 100 left images: CAMERA_RIGHT leaves images out, "
-            "or loses them on its way; airdos-doctor looks at the network\n");
+            "200: no right image came for 20 of 100 left images: CAMERA_RIGHT skips images, or "
+            "loses them in transit; airdos-doctor checks the network\n");
 }
 
 TEST_F(PartnerWatchTest, HalfAnImageApartIsTooMuch) {
@@ -79,7 +79,7 @@ TEST_F(PartnerWatchTest, HalfAnImageApartIsTooMuch) {
   AddMany(100, true, -51000);
   EXPECT_EQ(said_,
             "300: CAMERA_RIGHT is 0.051 s away from the left image of the same number (median): do "
-            "both drivers count from the same image, and by the same clock?\n");
+            "both drivers count from the same image and use the same clock?\n");
   AddMany(200, true, -51000);
   EXPECT_EQ(said_.find('\n'), said_.size() - 1) << "said once";
 }
@@ -157,7 +157,7 @@ TEST_F(StrayWatchTest, AnEarlierSessionComesAgainWhateverItsNumbers) {
   EXPECT_FALSE(Refused(100, 1));
   EXPECT_FALSE(Refused(101, 1));
   EXPECT_EQ(watch_.AddRefused({1, 102, 1})
-                .find("session 1 was already worked on, session 2 came after it"),
+                .find("session 1 was already processed, session 2 came after it"),
             0u);
 }
 

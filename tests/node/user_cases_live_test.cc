@@ -19,7 +19,7 @@
 #include "processes/optimizer/optimizer_messages.h"
 #include "processes/optimizer/optimizer_node.h"
 #include "tests/node/fake_nodes.h"
-#include "tests/node/frontend_messages.h"
+#include "tests/node/frontend_walk.h"
 
 // What users' own drivers and second plays of a log do to processes that run: they go on, and say
 // in words what is wrong.
@@ -138,8 +138,8 @@ TEST(UserCases, Case86cTheRightCameraHasASessionOfItsOwn) {
     said += watch.Add({100000 * seq, seq, 1}, std::nullopt, left_numbers, right_numbers);
   }
   EXPECT_EQ(said,
-            "no right image came for 10 of 10 left images: CAMERA_RIGHT is of session 2, the left "
-            "images of session 1; both must say the same session")
+            "no right image came for 10 of 10 left images: CAMERA_RIGHT has session 2, the left "
+            "images have session 1; both must have the same session")
       << "and once";
 }
 
@@ -229,9 +229,9 @@ TEST_F(PlayedAgainTest, CaseLogPlayedTwice) {
   const std::vector<std::string> said = node_.TakeWarnings();
   ASSERT_EQ(said.size(), 1u) << "once, not for each channel";
   EXPECT_EQ(said[0],
-            "session 1 was already worked on up to image 49: what comes again of it is dropped; to "
+            "session 1 was already processed up to image 49: repeated messages are dropped; to "
             "play it again use replay_log.sh (a new session each time) or airdos-stereo-player "
-            "--data LOG --session N, or start the processes again");
+            "--data LOG --session N, or restart the processes");
   Play(0, 49, 1);
   EXPECT_EQ(node_.TakeWarnings().size(), 1u) << "each time";
   EXPECT_EQ(node_.frames().num_done, 50);
@@ -253,7 +253,7 @@ TEST_F(PlayedAgainTest, CaseEarlierSessionPlayedAgain) {
   Play(0, 9, 1);
   const std::vector<std::string> said = node_.TakeWarnings();
   ASSERT_EQ(said.size(), 1u);
-  EXPECT_EQ(said[0].find("session 1 was already worked on, session 2 came after it"), 0u);
+  EXPECT_EQ(said[0].find("session 1 was already processed, session 2 came after it"), 0u);
 }
 
 TEST_F(PlayedAgainTest, CaseDuplicatesAndOvertakenMessagesAreNoSecondPlay) {
@@ -289,7 +289,7 @@ TEST_F(PlayedAgainTest, CaseImagesThatComeAfterTheirFrame) {
   }
   ASSERT_EQ(node_.TakeWarnings().size(), 1u);
   EXPECT_TRUE(
-      HasWarning(node_, "FIRST: image 7 comes after that frame, or a later one, was worked"))
+      HasWarning(node_, "FIRST: image 7 comes after that frame, or a later one, was processed"))
       << AllWarnings(node_);
 }
 
@@ -304,9 +304,10 @@ TEST(UserCases, CaseNoCalibration) {
   ASSERT_TRUE(node.CompleteOldest());  // after a deadline
   ASSERT_TRUE(node.CompleteOldest());
   ASSERT_EQ(node.warnings().size(), 1u);
-  EXPECT_EQ(node.warnings().front(),
-            "no CALIBRATION yet for session 7: no pose will come until it does; there is one for "
-            "session 8");
+  EXPECT_EQ(
+      node.warnings().front(),
+      "no CALIBRATION yet for session 7: there are no poses until it arrives; there is one for "
+      "session 8");
 }
 
 TEST(UserCases, CaseWarningsAreBounded) {
@@ -401,6 +402,35 @@ TEST(UserCases, CaseImagesThatAreNotRectified) {
 TEST(UserCases, CaseImagesThatAreExchanged) {
   const std::string said = WatchPairs(0, true);
   EXPECT_EQ(said.find("left and right images are exchanged: "), 0u) << said;
+}
+
+/// What the front end warns of where the cameras are exchanged, the right one so much later.
+std::string WarningsOfExchangedCameras(std::int64_t right_later_us) {
+  FrontendNode node(WithoutFeedback());
+  Send(channel::kCalibration, Calibration(), &node);
+  for (int k = 0; k < 12; ++k) {
+    image_t left = Left(k);
+    image_t right = Right(k);
+    std::swap(left.data, right.data);
+    std::swap(left.num_bytes, right.num_bytes);
+    right.utime += right_later_us;
+    SendNobody(k, &node);
+    Send(channel::kPersonMask, NoMask(k), &node);
+    Send(channel::kCameraLeft, left, &node);
+    Send(channel::kCameraRight, right, &node);
+    StepAll(&node);
+  }
+  return AllWarnings(node);
+}
+
+TEST(UserCases, Case86cImagesOfOtherTimesAreNotHeldAgainstEachOther) {
+  constexpr char kExchanged[] = "left and right images are exchanged";
+  for (const std::int64_t sign : {-1, 1}) {
+    std::string said = WarningsOfExchangedCameras(sign * 20000);
+    EXPECT_NE(said.find(kExchanged), std::string::npos) << said;
+    said = WarningsOfExchangedCameras(sign * 20001);
+    EXPECT_EQ(said.find(kExchanged), std::string::npos) << said;
+  }
 }
 
 TEST(UserCases, CaseRowErrorOfImagesWithoutCorners) {
@@ -541,7 +571,7 @@ TEST(UserCases, Case86cTrajectoryFilesNeverGoBackInTime) {
   }
   std::filesystem::remove_all(folder);
   EXPECT_EQ(times,
-            "# left out: 2 poses whose time is not later than that of an image before them "
+            "# left out: 2 poses whose time is not later than that of an earlier image "
             "1.001.101.20");
 }
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -21,6 +22,8 @@
 #include "processes/node/message/codec.h"
 #include "processes/stereo_player/dataset_source.h"
 #include "processes/stereo_player/player_loop.h"
+#include "tests/node/small_log_test.h"
+#include "tests/support/input_errors.h"
 #include "tests/support/small_sequence.h"
 
 namespace airdos {
@@ -31,33 +34,9 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kSession = 5;
 constexpr std::int64_t kNumFrames = SmallSequence::kNumFrames;
 
-bool Has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-class UserCases : public testing::Test {
+class UserCases : public SmallLogTest {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("airdos_user_cases_logs_" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-    path_ = (folder_ / "input.lcm").string();
-    messages_ = SoundMessages();
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  /// What the player publishes of the small sequence.
-  const std::vector<Envelope>& SoundMessages() const {
-    static const std::vector<Envelope> messages = [this] {
-      const fs::path data = folder_ / "data";
-      SmallSequence::Make().Write(data);
-      DatasetSource source(data.string(), 0, 1000, kSession, {});
-      std::vector<Envelope> all;
-      for (auto frame = source.NextFrame(); !frame.empty(); frame = source.NextFrame())
-        all.insert(all.end(), frame.begin(), frame.end());
-      return all;
-    }();
-    return messages;
-  }
+  UserCases() : SmallLogTest("user_cases_logs", kSession) {}
 
   void ChangeHeaders(const std::function<void(const std::string&, Header*)>& change) {
     for (Envelope& message : messages_) {
@@ -78,18 +57,6 @@ class UserCases : public testing::Test {
   }
   void Rename(const std::function<std::string(const std::string&)>& rename) {
     for (Envelope& message : messages_) message.channel = rename(message.channel);
-  }
-  void Remove(const std::string& channel) {
-    messages_.erase(std::remove_if(messages_.begin(), messages_.end(),
-                                   [&](const Envelope& m) { return m.channel == channel; }),
-                    messages_.end());
-  }
-
-  void Write() const {
-    EventLogWriter writer(path_);
-    for (const Envelope& message : messages_)
-      writer.Append(1000 * writer.num_events(), message.channel, message.payload.data(),
-                    message.payload.size());
   }
 
   /// The lines of errors and warnings that a check makes, without the last one, which counts them.
@@ -114,8 +81,8 @@ class UserCases : public testing::Test {
     for (const auto depth : {CheckOptions::Depth::kQuick, CheckOptions::Depth::kFull}) {
       const std::string text = Check(depth);
       EXPECT_EQ(findings_.count(Severity::kError), 1) << text;
-      EXPECT_TRUE(Has(text, part)) << text;
-      EXPECT_TRUE(Has(text, "[" + kind + "]")) << text;
+      EXPECT_TRUE(Holds(text, part)) << text;
+      EXPECT_TRUE(Holds(text, "[" + kind + "]")) << text;
     }
   }
 
@@ -137,11 +104,6 @@ class UserCases : public testing::Test {
       return error.what();
     }
   }
-
-  fs::path folder_;
-  std::string path_;
-  std::vector<Envelope> messages_;
-  FindingList findings_;
 };
 
 TEST_F(UserCases, ASoundLogHasNothingToSay) {
@@ -165,13 +127,13 @@ TEST_F(UserCases, Case85ChannelNamesWithAPrefixAnotherCaseOrASuffix) {
     ExpectOneError(left + " looks like CAMERA_LEFT", "log.images");
     const std::string text = Check();
     for (const std::string& name : InputChannels()) {
-      EXPECT_TRUE(Has(text, name)) << text;
-      EXPECT_TRUE(Has(text, rename(name) + " (")) << text;
+      EXPECT_TRUE(Holds(text, name)) << text;
+      EXPECT_TRUE(Holds(text, rename(name) + " (")) << text;
     }
-    EXPECT_TRUE(Has(text, left + " (14 messages of image_t, ")) << text;
+    EXPECT_TRUE(Holds(text, left + " (14 messages of image_t, ")) << text;
     const std::string why = WhyUnusable(path_);
-    EXPECT_TRUE(Has(why, path_ + ": holds no message for the processes")) << why;
-    EXPECT_TRUE(Has(why, left + " looks like CAMERA_LEFT")) << why;
+    EXPECT_TRUE(Holds(why, path_ + ": contains no message for the processes")) << why;
+    EXPECT_TRUE(Holds(why, left + " looks like CAMERA_LEFT")) << why;
     EXPECT_EQ(why.find('\n'), std::string::npos) << why;
   }
 }
@@ -184,9 +146,9 @@ TEST_F(UserCases, Case85OneChannelOfAnotherName) {
   messages_ = SoundMessages();
   Rename(
       [](const std::string& name) { return name == channel::kPersonMask ? "person_mask" : name; });
-  EXPECT_TRUE(Has(Check(),
-                  "PERSON_MASK: warning: no message, for 14 of CAMERA_LEFT; person_mask "
-                  "looks like it"))
+  EXPECT_TRUE(Holds(Check(),
+                    "PERSON_MASK: warning: no message, for 14 of CAMERA_LEFT; person_mask "
+                    "looks like it"))
       << Check();
 }
 
@@ -194,22 +156,22 @@ TEST_F(UserCases, Case85ALogOfOthersListsItsChannels) {
   messages_.clear();
   for (int i = 0; i < 30; ++i) messages_.push_back({"JOINT_" + std::to_string(i), {1, 2, 3}});
   const std::string text = Check();
-  EXPECT_TRUE(Has(text, "JOINT_0 (1 message, 1 kB), JOINT_1 (")) << text;
-  EXPECT_TRUE(Has(text, " and 10 more")) << text;
-  EXPECT_FALSE(Has(text, "looks like")) << text;
+  EXPECT_TRUE(Holds(text, "JOINT_0 (1 message, 1 kB), JOINT_1 (")) << text;
+  EXPECT_TRUE(Holds(text, " and 10 more")) << text;
+  EXPECT_FALSE(Holds(text, "looks like")) << text;
 }
 
 TEST_F(UserCases, Case86AllNumbersAreZero) {
   ChangeHeaders([](const std::string&, Header* header) { header->seq = 0; });
   ExpectOneError("all messages have number 0 (seq): number the images 0, 1, 2, …", "log.numbers");
   EXPECT_EQ(findings_.count(Severity::kWarning), 0) << Check();
-  EXPECT_TRUE(Has(Notes(), "all messages have number 0")) << Notes();
+  EXPECT_TRUE(Holds(Notes(), "all messages have number 0")) << Notes();
   messages_ = SoundMessages();
   ChangeHeaders([](const std::string&, Header* header) {
     header->session = header->seq;
     header->seq = 0;
   });
-  EXPECT_TRUE(Has(Check(), "has a session of its own")) << Check();
+  EXPECT_TRUE(Holds(Check(), "has its own session")) << Check();
 }
 
 TEST_F(UserCases, Case86cTheRightCameraCountsFromElsewhere) {
@@ -221,11 +183,11 @@ TEST_F(UserCases, Case86cTheRightCameraCountsFromElsewhere) {
     });
     const std::string text = Check(CheckOptions::Depth::kQuick);
     EXPECT_GE(findings_.count(Severity::kError), 1) << text;
-    EXPECT_TRUE(Has(text, "its numbers are those of CAMERA_LEFT " +
-                              std::string(offset < 0 ? "- " : "+ ") +
-                              std::to_string(std::abs(offset))))
+    EXPECT_TRUE(Holds(text, "its numbers are those of CAMERA_LEFT " +
+                                std::string(offset < 0 ? "- " : "+ ") +
+                                std::to_string(std::abs(offset))))
         << text;
-    EXPECT_TRUE(Has(Notes(), "its numbers are those of CAMERA_LEFT")) << Notes();
+    EXPECT_TRUE(Holds(Notes(), "its numbers are those of CAMERA_LEFT")) << Notes();
   }
 }
 
@@ -237,7 +199,7 @@ TEST_F(UserCases, Case86cClocksDifferAsWell) {
   });
   ExpectOneError("in the order of the log its numbers are those of CAMERA_LEFT + 1000",
                  "log.partners");
-  EXPECT_TRUE(Has(Check(), "14 of 14 left images have no message of their number")) << Check();
+  EXPECT_TRUE(Holds(Check(), "14 of 14 left images have no message with their number")) << Check();
 }
 
 TEST_F(UserCases, Case86cSessionsDiffer) {
@@ -245,7 +207,7 @@ TEST_F(UserCases, Case86cSessionsDiffer) {
     if (name == channel::kCameraRight) header->session = 77;
   });
   ExpectOneError(
-      "CAMERA_RIGHT: error: 14 of 14 left images have no message of their number and "
+      "CAMERA_RIGHT: error: 14 of 14 left images have no message with their number and "
       "session here: its session is 77, that of CAMERA_LEFT 5",
       "log.partners");
 }
@@ -269,14 +231,14 @@ TEST_F(UserCases, Case86cAFewPartnersAreMissing) {
                   messages_.end());
   const std::string text = Check();
   EXPECT_EQ(findings_.count(Severity::kError), 0) << text;
-  EXPECT_TRUE(Has(text,
-                  "CAMERA_RIGHT: warning: 2 of 14 left images have no message of their "
-                  "number and session here, the first is 2"))
+  EXPECT_TRUE(Holds(text,
+                    "CAMERA_RIGHT: warning: 2 of 14 left images have no message with their number "
+                    "and session here, the first is 2"))
       << text;
-  EXPECT_TRUE(Has(Notes(), "CAMERA_RIGHT: 2 of 14 left images")) << Notes();
+  EXPECT_TRUE(Holds(Notes(), "CAMERA_RIGHT: 2 of 14 left images")) << Notes();
   messages_ = SoundMessages();
   Remove(channel::kCameraRight);
-  EXPECT_TRUE(Has(Notes(), "no message on CAMERA_RIGHT")) << Notes();
+  EXPECT_TRUE(Holds(Notes(), "no message on CAMERA_RIGHT")) << Notes();
 }
 
 TEST_F(UserCases, Case86cCaptureTimesOfAPairDiffer) {
@@ -311,7 +273,8 @@ TEST_F(UserCases, Case87ClocksThatStandStillOrGoBack) {
   messages_ = SoundMessages();
   ChangeHeaders(
       [](const std::string&, Header* header) { header->utime = 1000000000 - header->utime; });
-  ExpectOneError("13 of 14 images have an earlier capture time than the one before", "times.order");
+  ExpectOneError("13 of 14 images have an earlier capture time than the previous one",
+                 "times.order");
   messages_ = SoundMessages();
   ChangeHeaders([](const std::string& name, Header* header) {
     if (name == channel::kCameraRight) header->utime *= 1000;
@@ -323,7 +286,7 @@ TEST_F(UserCases, Case88bWidthAndHeightAreExchanged) {
   const auto exchange = [](auto* message) { std::swap(message->width, message->height); };
   ChangeAll<image_t>(channel::kCameraLeft, exchange);
   ExpectOneError(
-      "CAMERA_LEFT 0: error: the message says 192 x 320 px, the file in it is of 320 x "
+      "CAMERA_LEFT 0: error: the message says 192 x 320 px, the file in it has 320 x "
       "192 px: width and height are exchanged; so 14 of 14 messages",
       "images.file");
   messages_ = SoundMessages();
@@ -349,9 +312,9 @@ TEST_F(UserCases, Case88bTheCalibrationIsOfAnotherResolution) {
     message->height *= 2;
   });
   const std::string text = Check(CheckOptions::Depth::kQuick);
-  EXPECT_TRUE(Has(text,
-                  "CAMERA_LEFT 0: error: is of 320 x 192 px, CALIBRATION is for 640 x 384 px: "
-                  "another resolution"))
+  EXPECT_TRUE(Holds(text,
+                    "CAMERA_LEFT 0: error: is of 320 x 192 px, CALIBRATION is for 640 x 384 px: "
+                    "another resolution"))
       << text;
 }
 
@@ -405,17 +368,17 @@ TEST_F(UserCases, TypesOfAnotherVersionAreNamedByTheirFingerprints) {
   char found[32];
   std::snprintf(found, sizeof(found), "%016llx",
                 static_cast<unsigned long long>(image_t::getHash()) ^ 0x1000000000000000ULL);
-  EXPECT_TRUE(Has(text, "has type fingerprint 0x" + std::string(found) +
-                            ", this build wants image_t (0x" + wanted + ")"))
+  EXPECT_TRUE(Holds(text, "has type fingerprint 0x" + std::string(found) +
+                              ", this build wants image_t (0x" + wanted + ")"))
       << text;
-  EXPECT_TRUE(Has(text, "so 14 of 14 messages [log.type]")) << text;
+  EXPECT_TRUE(Holds(text, "so 14 of 14 messages [log.type]")) << text;
   EXPECT_EQ(findings_.count(Severity::kError), 2) << text;  // and no image can be used
   messages_ = SoundMessages();
   Rename([](const std::string& name) {
     if (name == channel::kCameraRight) return std::string(channel::kPersonMask);
     return name == channel::kPersonMask ? std::string(channel::kCameraRight) : name;
   });
-  EXPECT_TRUE(Has(Check(), "CAMERA_RIGHT has type person_mask_t")) << Check();
+  EXPECT_TRUE(Holds(Check(), "CAMERA_RIGHT has type person_mask_t")) << Check();
 }
 
 TEST_F(UserCases, OutputsInALogAreNamed) {
@@ -423,8 +386,8 @@ TEST_F(UserCases, OutputsInALogAreNamed) {
   EXPECT_EQ(Check(), "");
   const auto& all = findings_.findings();
   EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const Finding& finding) {
-    return finding.kind == "log.outputs" && Has(finding.what, "STATE_ESTIMATE") &&
-           Has(finding.what, "airdos-record --inputs-only");
+    return finding.kind == "log.outputs" && Holds(finding.what, "STATE_ESTIMATE") &&
+           Holds(finding.what, "airdos-record --inputs-only");
   }));
 }
 
@@ -432,7 +395,7 @@ TEST_F(UserCases, ARecordingOfALogThatWasPlayedTwice) {
   const std::vector<Envelope> once = messages_;
   messages_.insert(messages_.end(), once.begin(), once.end());
   const std::string text = Check();
-  EXPECT_TRUE(Has(text, "CAMERA_LEFT 0: error: comes after number 13: its session starts again"))
+  EXPECT_TRUE(Holds(text, "CAMERA_LEFT 0: error: comes after number 13: its session starts again"))
       << text;
 }
 
@@ -446,14 +409,14 @@ TEST_F(UserCases, FilesOfOtherKindsAreNamed) {
       {"", "holds no LCM event (0 bytes)"}};
   for (const auto& [bytes, what] : files) {
     std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
-    EXPECT_TRUE(Has(WhyUnusable(path_), path_ + ": " + what)) << WhyUnusable(path_);
+    EXPECT_TRUE(Holds(WhyUnusable(path_), path_ + ": " + what)) << WhyUnusable(path_);
     EXPECT_THROW(CheckLog(path_, {}, &findings_), InputError);
   }
-  EXPECT_TRUE(Has(WhyUnusable(folder_.string()), "is a folder"));
-  EXPECT_TRUE(Has(WhyUnusable("/dev/zero"), "is a pipe or a device"));
+  EXPECT_TRUE(Holds(WhyUnusable(folder_.string()), "is a folder"));
+  EXPECT_TRUE(Holds(WhyUnusable("/dev/zero"), "is a pipe or a device"));
   const std::string fifo = (folder_ / "fifo").string();
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
-  EXPECT_TRUE(Has(WhyUnusable(fifo), "is a pipe or a device"));  // and it does not hang
+  EXPECT_TRUE(Holds(WhyUnusable(fifo), "is a pipe or a device"));  // and it does not hang
 }
 
 /// Session and number of all messages, and whether apart from sessions they are those of the log.
@@ -496,8 +459,7 @@ TEST_F(UserCases, ALogIsPlayedAgainAsNewSessions) {
             (std::vector<std::int64_t>{70, 71}));
 
   const std::string written = (folder_ / "written.lcm").string();
-  std::ostringstream log;
-  WriteLog(written, OpenPlayerSource(options, 70).get(), &log);
+  WriteLog(written, OpenPlayerSource(options, 70).get(), ProcessLog("player", LogLevel::kError));
   LogSource again(written);
   EXPECT_EQ(SessionsPlayed(&again, messages_), (std::vector<std::int64_t>{70, 71}));
 }

@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <iterator>
 #include <memory>
 #include <string>
@@ -12,12 +10,13 @@
 #include "airdos/pose_t.hpp"
 #include "airdos/state_estimate_t.hpp"
 #include "common/map/four_d_map.h"
-#include "common/util/error.h"
 #include "processes/map_recorder/map_recorder_node.h"
 #include "processes/node/log/event_log.h"
 #include "processes/node/message/channels.h"
 #include "processes/node/message/codec.h"
 #include "processes/tools/replay/replay_setup.h"
+#include "tests/support/folder_test.h"
+#include "tests/support/input_errors.h"
 
 // What the map recorder and a replay do with the folder that they are given.
 
@@ -26,38 +25,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string MessageOf(const std::function<void()>& what) {
-  try {
-    what();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool Has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-class UserCases : public ::testing::Test {
+class UserCases : public FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("airdos_user_cases_node_" + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
-  std::string Write(const std::string& name, const std::string& text) const {
-    fs::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name) << text;
-    return Path(name);
-  }
-  std::string TextOf(const std::string& name) const {
-    std::ifstream file(folder_ / name);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
+  UserCases() : FolderTest("user_cases_node") {}
 
   MapRecorderOptions Options(bool force = false) const {
     MapRecorderOptions options;
@@ -73,11 +43,7 @@ class UserCases : public ::testing::Test {
   }
   template <class Message>
   static Message Make(std::int64_t seq, std::int64_t session) {
-    Message message = {};
-    message.utime = 1000000 + 100000 * seq;
-    message.seq = seq;
-    message.session = session;
-    return message;
+    return MessageOf<Message>({1000000 + 100000 * seq, seq, session});
   }
   static void Feed(int num_frames, bool has_truth, std::int64_t session, Node* node) {
     for (std::int64_t seq = 0; seq < num_frames; ++seq) {
@@ -100,7 +66,6 @@ class UserCases : public ::testing::Test {
     Feed(num_frames, has_truth, 7, &node);
     node.Finish();
   }
-  fs::path folder_;
 };
 
 TEST_F(UserCases, CaseC11NothingOfALongerRunStandsBesideAShorterOne) {
@@ -115,9 +80,9 @@ TEST_F(UserCases, CaseC11NothingOfALongerRunStandsBesideAShorterOne) {
   testing::internal::CaptureStderr();
   Record(2, false);
   const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_TRUE(Has(said, "run/map.airdos: replaces the map of session 7, 5 frames")) << said;
-  EXPECT_TRUE(Has(said, "replaces the map of session 8, 3 frames")) << said;
-  EXPECT_TRUE(Has(said, "replaces the results of an earlier run: ")) << said;
+  EXPECT_TRUE(Holds(said, "run/map.airdos: replaces the map of session 7, 5 frames")) << said;
+  EXPECT_TRUE(Holds(said, "replaces the map of session 8, 3 frames")) << said;
+  EXPECT_TRUE(Holds(said, "replaces the results of an earlier run: ")) << said;
   EXPECT_FALSE(fs::exists(Path("run/ground_truth.tum")));
   EXPECT_FALSE(fs::exists(Path("run/session_2")));
   MapFileSummary summary;
@@ -149,23 +114,23 @@ TEST_F(UserCases, CaseC03FilesOfTheUserAreLeftAlone) {
 TEST_F(UserCases, CaseC03AFileOfTheUserInTheWayIsNamedBeforeTheFirstFrame) {
   for (const char* name : {"map.airdos", "trajectory.tum", "people/3.tum", "session_2/map.ply"}) {
     Write(std::string("run/") + name, "mine");
-    const std::string message = MessageOf([&] { MapRecorderNode node(Options()); });
-    EXPECT_TRUE(Has(message, std::string("run/") + name)) << message;
-    EXPECT_TRUE(Has(message, "--force replaces it")) << message;
+    const std::string message = ErrorOf([&] { MapRecorderNode node(Options()); });
+    EXPECT_TRUE(Holds(message, std::string("run/") + name)) << message;
+    EXPECT_TRUE(Holds(message, "--force replaces it")) << message;
     EXPECT_EQ(TextOf(std::string("run/") + name), "mine");
     EXPECT_FALSE(fs::exists(Path("run/.airdos_results")));
     fs::remove_all(Path("run"));
   }
   Write("run/trajectory.tum", "mine");
   Record(2, false, true);
-  EXPECT_TRUE(Has(TextOf("run/trajectory.tum"), "1.100000 "));
+  EXPECT_TRUE(Holds(TextOf("run/trajectory.tum"), "1.100000 "));
 }
 
 TEST_F(UserCases, CaseC09TwoRecordersInOneFolder) {
   MapRecorderNode first(Options());
   Feed(3, true, 7, &first);
-  EXPECT_TRUE(Has(MessageOf([&] { MapRecorderNode second(Options(true)); }),
-                  "another run is writing here"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { MapRecorderNode second(Options(true)); }),
+                    "another run is writing here"));
   first.Finish();
   MapFileSummary summary;
   EXPECT_EQ(ReadFourDMap(Path("run/map.airdos"), &summary).frames.size(), 3u);
@@ -179,21 +144,21 @@ TEST_F(UserCases, CaseC09TheMapIsHeldAgainstWhatWasRecorded) {
     MapFileWriter writer(Path("run/map.airdos"));
     writer.Append(HeadChunk(7, "somebody else"));
   }
-  const std::string message = MessageOf([&] { node.Finish(); });
-  EXPECT_TRUE(Has(message, "run/map.airdos: ")) << message;
-  EXPECT_TRUE(Has(message, "were written")) << message;
+  const std::string message = ErrorOf([&] { node.Finish(); });
+  EXPECT_TRUE(Holds(message, "run/map.airdos: ")) << message;
+  EXPECT_TRUE(Holds(message, "were written")) << message;
 }
 
 TEST_F(UserCases, CaseC09TwoWritersOfOneLog) {
   EventLogWriter first(Path("out.lcm"));
   first.Append(1, "A", "x", 1);
-  EXPECT_TRUE(Has(MessageOf([&] { EventLogWriter second(Path("out.lcm")); }),
-                  "another program is writing it"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { EventLogWriter second(Path("out.lcm")); }),
+                    "another program is writing it"));
   EXPECT_GT(fs::file_size(Path("out.lcm")), 0u);
 }
 
 TEST_F(UserCases, CaseC07ARecorderMustBeToldWhere) {
-  EXPECT_TRUE(Has(MessageOf([&] { MapRecorderNode node{MapRecorderOptions()}; }), "--run-dir"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { MapRecorderNode node{MapRecorderOptions()}; }), "--run-dir"));
 }
 
 class ReplayCases : public UserCases {
@@ -222,7 +187,7 @@ TEST_F(ReplayCases, CaseC09ARefusedReplayWritesNothing) {
   ReplaySetup second = setup_;
   second.people = "off";
   second.outputs = {Path("run/out.lcm"), Path("timing.json")};
-  EXPECT_TRUE(Has(MessageOf([&] { PrepareReplay(second); }), "another run is writing here"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { PrepareReplay(second); }), "another run is writing here"));
   EXPECT_EQ(TextOf("run/frontend.yaml"), "of the first");
   EXPECT_FALSE(fs::exists(Path("run/out.lcm")));
 }
@@ -232,7 +197,7 @@ TEST_F(ReplayCases, CaseC01AConfigurationThatIsReadIsAnInput) {
   SetConfig(Path("config"), &setup_);
   setup_.run_dir = Path("config");
   setup_.rules.force = true;
-  EXPECT_TRUE(Has(MessageOf([&] { PrepareReplay(setup_); }), "frontend.yaml: is an input"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { PrepareReplay(setup_); }), "frontend.yaml: is an input"));
   EXPECT_FALSE(fs::exists(Path("config/.airdos_results")));
 }
 
@@ -242,9 +207,9 @@ TEST_F(ReplayCases, CaseC01TheLogIsNoPlaceForTheOutput) {
     setup_.run_dir = *run_dir == '\0' ? "" : Path(run_dir);
     setup_.rules = {{Path("in.lcm")}, true};
     setup_.outputs = {Path("in.lcm")};
-    EXPECT_TRUE(Has(MessageOf([&] { PrepareReplay(setup_); }), "is an input")) << run_dir;
+    EXPECT_TRUE(Holds(ErrorOf([&] { PrepareReplay(setup_); }), "is an input")) << run_dir;
     setup_.outputs = {Path("a"), Path("./a")};
-    EXPECT_TRUE(Has(MessageOf([&] { PrepareReplay(setup_); }), "twice")) << run_dir;
+    EXPECT_TRUE(Holds(ErrorOf([&] { PrepareReplay(setup_); }), "twice")) << run_dir;
   }
   EXPECT_EQ(TextOf("in.lcm"), "events");
 }
@@ -252,16 +217,16 @@ TEST_F(ReplayCases, CaseC01TheLogIsNoPlaceForTheOutput) {
 TEST_F(ReplayCases, AssignmentsNeedNoProcessWhereOneAloneHasTheKey) {
   setup_.run_dir = Path("run");
   setup_.overrides = {"output.chunk_frames=3", "human-tracker:tracking.nothing=1"};
-  EXPECT_TRUE(Has(MessageOf([&] { PrepareReplay(setup_); }), "tracking.nothing"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { PrepareReplay(setup_); }), "tracking.nothing"));
   setup_.overrides = {"output.chunk_frames=3"};
   PrepareReplay(setup_);
-  EXPECT_TRUE(Has(TextOf("run/map_recorder.yaml"), "output.chunk_frames: 3\n"));
+  EXPECT_TRUE(Holds(TextOf("run/map_recorder.yaml"), "output.chunk_frames: 3\n"));
   setup_.overrides = {"output.chunk_frame=3"};
-  EXPECT_TRUE(Has(MessageOf([&] { PrepareReplay(setup_); }), "did you mean 'output.chunk_frames'"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { PrepareReplay(setup_); }), "did you mean 'output.chunk_frames'"));
   setup_.overrides = {"optimzer:people.mode=on"};
-  EXPECT_TRUE(Has(MessageOf([&] { PrepareReplay(setup_); }), "did you mean 'optimizer'"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { PrepareReplay(setup_); }), "did you mean 'optimizer'"));
   setup_.overrides = {"stereo_player:image.max_image_bytes=3000"};
-  EXPECT_TRUE(Has(MessageOf([&] { PrepareReplay(setup_); }), "no part of a replay"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { PrepareReplay(setup_); }), "not part of a replay"));
 }
 
 TEST_F(ReplayCases, OneFileOfAConfigurationIsKnownByItsName) {
@@ -270,7 +235,8 @@ TEST_F(ReplayCases, OneFileOfAConfigurationIsKnownByItsName) {
   setup_.run_dir = Path("run");
   EXPECT_EQ(MakeReplayNodes(setup_).size(), 4u);
   Write("mine.yaml", "");
-  EXPECT_TRUE(Has(MessageOf([&] { SetConfig(Path("mine.yaml"), &setup_); }), "of which process"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { SetConfig(Path("mine.yaml"), &setup_); }),
+                    "which process it belongs to"));
 }
 
 }  // namespace

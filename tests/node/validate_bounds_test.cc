@@ -2,6 +2,7 @@
 // greatest and least that are allowed pass.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <string>

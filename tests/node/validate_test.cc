@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <string>
@@ -66,8 +67,8 @@ TEST(ValidateTest, Calibration) {
   using M = stereo_calibration_t;
   ExpectReject<M>("width 9000", [](M* m) { m->width = 9000; });
   ExpectReject<M>("focal length", [](M* m) { m->fx_px = kNan; });
-  ExpectReject<M>("no camera", [](M* m) { m->fy_px = 0; });
-  ExpectReject<M>("no camera", [](M* m) { m->cx_px = 700; });
+  ExpectReject<M>("not a camera", [](M* m) { m->fy_px = 0; });
+  ExpectReject<M>("not a camera", [](M* m) { m->cx_px = 700; });
   ExpectReject<M>("fx_px 6", [](M* m) { m->fx_px = 6; });
   ExpectReject<M>("baseline_m 1e-05", [](M* m) { m->baseline_m = 1e-5; });
   ExpectReject<M>("baseline_m -0.1", [](M* m) { m->baseline_m = -0.1; });

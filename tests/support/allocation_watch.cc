@@ -13,7 +13,7 @@ void* operator new(std::size_t size) {
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
-// std::stable_sort() takes its buffer so; whoever frees it must be of the same kind.
+// std::stable_sort() allocates its buffer this way, and it must be freed by the matching operator.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   if (size > largest_allocation) largest_allocation = size;
   return std::malloc(size);

@@ -5,7 +5,7 @@
 
 namespace airdos {
 
-/// A program that links this has its operator new watched. One thread only.
+/// Linking this instruments operator new of a program. Single-threaded programs only.
 void ResetLargestAllocation();
 std::size_t LargestAllocation();
 

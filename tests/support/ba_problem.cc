@@ -15,8 +15,8 @@
 namespace airdos {
 namespace {
 
-/// Points of the object are numbered one frame after the other: their number within the frame is
-/// that of the model's point.
+/// The object's points are numbered consecutively over the frames: within a frame, a point's number
+/// is that of the model's point.
 struct DynamicPoint {
   int frame = 0;
   int number = 0;
@@ -143,10 +143,11 @@ class Reader {
     BundleOptions& options = result_.options;
     options.compute_covariance = false;
     options.max_iterations = 200;
-    options.max_iterations_after_elimination = 0;
+    options.max_iterations_after_rejection = 0;
     options.function_tolerance = 1e-6;
-    options.huber_static = options.huber_dynamic = 1e9;
+    options.huber_static_sigmas = options.huber_dynamic_sigmas = 1e9;
     options.motion_max_gap_s = std::numeric_limits<double>::infinity();
+    options.person_speed_m_s = 0;
   }
 
   std::string path_;
@@ -154,7 +155,7 @@ class Reader {
   double sigma_m_ = 1;
   double motion_sigma_m_ = 1;
   Se3 motion_W_;
-  std::map<int, int> landmark_;  // index in the problem, by number in the file; below likewise
+  std::map<int, int> landmark_;  // index in the problem, by number in the file; likewise below
   std::map<int, DynamicPoint> dynamic_;
   std::map<int, Eigen::Vector3d> start_W_;
   std::map<int, int> num_in_frame_;

@@ -8,11 +8,11 @@
 
 namespace airdos {
 
-/// A problem of the paper's timing benchmark (text, one record a line): points measured in camera
-/// axes, one moving object with segments and one rigid motion over the track.
+/// A problem of the paper's timing benchmark (text, one record per line): points measured in camera
+/// coordinates, and one moving object with segments and one rigid motion over the track.
 struct BaProblem {
   BundleProblem problem;  ///< start values
-  BundleOptions options;  ///< sigmas of the file, no kernels, no elimination
+  BundleOptions options;  ///< sigmas from the file, no kernels, no rejection
 };
 
 /// Throws InputError naming file and line.

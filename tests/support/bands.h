@@ -12,12 +12,13 @@
 
 namespace airdos {
 
-/// What was measured in one case, by name.
+/// The figures measured in one case, by name.
 using Figures = std::map<std::string, double>;
 
-/// Compares figures with tests/dataset/bands.txt (lines `case figure least most`; `#` begins a
-/// comment): each must have a band and lie in it, and each band of the case must have its figure.
-/// Prints them as tests/dataset/make_bands.sh reads them. `name` holds no space.
+/// Compares figures with tests/dataset/bands.txt (lines `case figure least most`; `#` starts a
+/// comment): each figure must have a band and be inside it, and each band of the case must have its
+/// figure. Prints them in the format that tests/dataset/make_bands.sh reads. `name` must not
+/// contain spaces.
 inline void ExpectInBands(const std::string& name, const Figures& figures) {
   std::map<std::string, std::pair<double, double>> bands;
   std::ifstream file(AIRDOS_SOURCE_DIR "/tests/dataset/bands.txt");

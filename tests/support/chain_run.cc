@@ -15,6 +15,7 @@
 #include "airdos/state_estimate_t.hpp"
 #include "common/evaluation/people_matching.h"
 #include "common/map/four_d_map.h"
+#include "common/util/quantile.h"
 #include "processes/node/log/event_log.h"
 #include "processes/node/message/channels.h"
 #include "processes/node/message/codec.h"
@@ -30,7 +31,7 @@ constexpr char kLogName[] = "out.lcm";
 constexpr double kMicro = 1e-6;
 constexpr double kMaxTimeDifferenceS = 0.001;
 
-/// A folder for one run.
+/// The folder of one run.
 class RunFolder {
  public:
   RunFolder() {
@@ -90,13 +91,7 @@ PeopleUse UseOfPeople(const std::string& log) {
   return use;
 }
 
-double MedianOf(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
-/// Middle of the joints that a torso's motion is about, where both frames have them all.
+/// Step of the middle of the joints that define a torso's motion, if both frames have all of them.
 std::optional<Eigen::Vector3d> TorsoStep(const Joints& before, const Joints& after) {
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
   for (const int joint : kBodyJoints) {
@@ -107,12 +102,12 @@ std::optional<Eigen::Vector3d> TorsoStep(const Joints& before, const Joints& aft
 }
 
 struct FrameOfPeople {
-  TrajectoryPose estimate, truth;     // of the camera
-  std::vector<human_state_t> humans;  // as told when the frame was the newest
+  TrajectoryPose estimate, truth;     // camera poses
+  std::vector<human_state_t> humans;  // as reported while the frame was the newest
   const TruePeople* true_people = nullptr;
 };
 
-/// Which true person each of the frame's people is.
+/// The true person for each of the frame's people.
 std::map<std::size_t, std::int64_t> Match(const FrameOfPeople& frame) {
   std::vector<Joints> measured_C;
   for (const human_state_t& human : frame.humans) {
@@ -132,7 +127,7 @@ std::map<std::size_t, std::int64_t> Match(const FrameOfPeople& frame) {
 std::vector<FrameOfPeople> FramesOfPeople(const std::string& log,
                                           const std::vector<TruePeople>& truth,
                                           const MatchedTrajectories& cameras) {
-  std::map<std::int64_t, std::vector<human_state_t>> humans;  // by utime
+  std::map<std::int64_t, std::vector<human_state_t>> humans;  // keyed by utime
   EventLogReader reader(log);
   while (const std::optional<LogEvent> event = reader.Next()) {
     if (event->channel != channel::kMapUpdate) continue;
@@ -154,7 +149,7 @@ std::vector<FrameOfPeople> FramesOfPeople(const std::string& log,
   return frames;
 }
 
-/// Of the torso, where it has one.
+/// The torso's motion, if it has one.
 std::optional<Eigen::Vector3d> MotionOf(const human_state_t& human) {
   const auto torso = std::find(human.part_id.begin(), human.part_id.end(), kTorsoPart);
   if (torso == human.part_id.end()) return std::nullopt;
@@ -163,10 +158,10 @@ std::optional<Eigen::Vector3d> MotionOf(const human_state_t& human) {
   return Eigen::Vector3d(t[0], t[1], t[2]);
 }
 
-/// Torsos of people who were seen in two frames in a row, against the true step of the same joints.
+/// Errors of torsos seen in two consecutive frames, relative to the true step of the same joints.
 VelocityErrors ErrorsOfVelocity(const std::vector<FrameOfPeople>& frames) {
   std::vector<double> errors, speeds;
-  std::map<std::int64_t, std::size_t> last_frame;  // of a track
+  std::map<std::int64_t, std::size_t> last_frame;  // of each track
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const auto matches = Match(frames[k]);
     for (std::size_t i = 0; i < frames[k].humans.size(); ++i) {
@@ -183,14 +178,14 @@ VelocityErrors ErrorsOfVelocity(const std::vector<FrameOfPeople>& frames) {
                                   frames[k].true_people->people.at(matches.at(i)).joints);
       if (!step) continue;
       const double step_s = frames[k].estimate.time_s - frames[k - 1].estimate.time_s;
-      // Each in the axes of its camera: the worlds differ.
+      // Each in the axes of its own camera, since the worlds differ.
       const Eigen::Vector3d moved_C = frames[k].estimate.rotation.transpose() * *motion;
       const Eigen::Vector3d truly_C = frames[k].truth.rotation.transpose() * *step;
       errors.push_back((moved_C - truly_C).norm() / step_s);
       speeds.push_back(moved_C.norm() / step_s);
     }
   }
-  return {errors.size(), MedianOf(errors), MedianOf(speeds)};
+  return {errors.size(), Quantile(errors, 0.5), Quantile(speeds, 0.5)};
 }
 
 void EvaluateTruth(const RunFolder& folder, const PeopleTruth& truth, ChainRun* run) {

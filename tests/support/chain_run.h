@@ -12,44 +12,46 @@
 
 namespace airdos {
 
-/// What the messages of a run say about people.
+/// Figures about people from the messages of a run.
 struct PeopleUse {
-  double joints_seen = 0;      ///< a frame, of HUMAN_OBSERVATIONS
-  double joints_adjusted = 0;  ///< a frame, of the newest frame in MAP_UPDATE
-  double people = 0;           ///< of the window, a frame, as are the next two
+  double joints_seen = 0;      ///< per frame, in HUMAN_OBSERVATIONS
+  double joints_adjusted = 0;  ///< per frame, for the newest frame in MAP_UPDATE
+  double people = 0;           ///< in the window, per frame, like the next two
   double rigidity_factors = 0;
   double motion_factors = 0;
   double rigidity_eliminated_percent = 0;
   double motion_eliminated_percent = 0;
-  double reprojection_eliminated = 0;  ///< a frame, landmarks and joints
+  double reprojection_eliminated = 0;  ///< per frame, landmarks and joints
 };
 
-/// Of the speeds of torsos in the map, m/s.
+/// Errors of the speeds of torsos in the map, m/s.
 struct VelocityErrors {
   std::size_t num = 0;
-  double median_m_s = 0;        ///< of the length of the difference from the true velocity
-  double median_speed_m_s = 0;  ///< as estimated, of the same people
+  double median_m_s = 0;        ///< of the magnitude of the velocity error
+  double median_speed_m_s = 0;  ///< estimated speed of the same people
 };
 
-/// Where the true people of a run are; an empty name: not known.
+/// Where the true people of a run are recorded; an empty name if unknown.
 struct PeopleTruth {
-  std::string joints;  ///< joints_gt.json, also compressed
+  std::string joints;  ///< joints_gt.json, possibly compressed
   std::string camera;  ///< TUM rows in optical axes, in the same world
 };
 
+/// The results of a run.
 struct ChainRun {
   ReplayResult result;
   TrajectoryReport trajectory;
-  std::size_t num_landmarks = 0;  ///< of the map
+  std::size_t num_landmarks = 0;  ///< in the map
   bool is_closed = false;
   PeopleUse use;
   std::optional<PeopleReport> people;
   std::optional<VelocityErrors> velocity;
 };
 
-/// What the bands are about; without those of people where their truth is not known.
+/// The figures that have bands; without those of people if their truth is unknown.
 Figures FiguresOf(const ChainRun& run);
 
+/// What RunChain() runs on.
 struct ChainInput {
   std::string path;    ///< log or folder of a data set
   std::string people;  ///< off, mask_only, on
@@ -57,8 +59,8 @@ struct ChainInput {
   PeopleTruth truth;
 };
 
-/// Runs the four nodes with the committed configuration, and TestOverrides(), in a folder of its
-/// own, which is gone afterwards.
+/// Runs the four nodes with the committed configuration, and TestOverrides(), in a temporary
+/// folder.
 ChainRun RunChain(const ChainInput& input);
 
 }  // namespace airdos

@@ -13,17 +13,18 @@
 
 namespace airdos {
 
-/// One person as it really was in one frame of a crossing sequence.
+/// The ground truth of one person in one frame of a crossing sequence.
 struct TruePerson {
   std::array<Eigen::Vector3d, kNumJoints> p_C;  ///< joints in the left camera
-  int num_visible_left = 0;                     ///< of all 18 joints, not hidden by others
+  int num_visible_left = 0;                     ///< of all 18 joints, those not hidden by others
   int num_visible_right = 0;
-  std::array<bool, kNumJoints> is_plain{};  ///< the joint is not hidden in the left image
+  std::array<bool, kNumJoints> is_plain{};  ///< whether the joint is not hidden in the left image
 };
 
+/// The ground truth of one frame.
 struct TrueFrame {
-  std::map<std::int64_t, TruePerson> people;  ///< by identity
-  std::vector<std::int64_t> identity_left;    ///< of each line of alphapose_0; -1: nobody
+  std::map<std::int64_t, TruePerson> people;  ///< keyed by identity
+  std::vector<std::int64_t> identity_left;    ///< for each line of alphapose_0; -1 for nobody
 };
 
 /// Reads gt_tum_optical.txt, joints_gt.json.gz and track_id_alpha of a crossing sequence. For

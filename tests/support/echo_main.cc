@@ -4,7 +4,7 @@
 int main(int argc, char** argv) {
   airdos::ProcessInfo info;
   info.program = "airdos-echo";
-  info.config_name = "echo";
+  info.options = airdos::PagesOf<airdos::EchoOptions>();
   info.description = "Says what it received, for tests";
   info.make_node = airdos::MakeEchoNode;
   info.publishes_frame_done = true;

@@ -7,17 +7,19 @@
 #include "airdos/image_t.hpp"
 #include "airdos/pose_t.hpp"
 #include "common/config/config_reader.h"
+#include "common/config/option_table.h"
 #include "processes/node/frame_node.h"
 
 namespace airdos {
 
+/// The messages of one frame.
 struct EchoInputs {
   std::optional<image_t> left;
   std::optional<image_t> right;
 };
 
-/// The smallest frame node: says on ECHO what it was given, as (bytes of the left image, bytes of
-/// the right image, baseline), -1 where an image was missing.
+/// The smallest frame node: publishes on ECHO what it received, as (bytes of the left image, bytes
+/// of the right image, baseline), with -1 for a missing image.
 class EchoNode : public FrameNode<EchoInputs> {
  public:
   static constexpr char kEcho[] = "ECHO";
@@ -31,10 +33,7 @@ class EchoNode : public FrameNode<EchoInputs> {
  protected:
   void StartSession(const Header&) override {}
   void ProcessFrame(const Header& header, EchoInputs inputs) override {
-    pose_t message = {};
-    message.utime = header.utime;
-    message.seq = header.seq;
-    message.session = header.session;
+    auto message = MessageOf<pose_t>(header);
     message.axes = pose_t::AXES_UNKNOWN;
     message.orientation[0] = 1;
     message.position[0] = inputs.left ? scale_ * inputs.left->num_bytes : -1;
@@ -47,10 +46,20 @@ class EchoNode : public FrameNode<EchoInputs> {
   double scale_;
 };
 
-inline std::unique_ptr<Node> MakeEchoNode(ConfigReader* config) {
+struct EchoOptions {
   double scale = 1;
-  config->Read("echo.scale", &scale, 0, 10);
-  return std::make_unique<EchoNode>(scale);
+};
+
+inline OptionTable TableOf(EchoOptions* options) {
+  OptionTable table("echo", "airdos-echo: for tests.");
+  table.AddSection("echo");
+  table.Add("echo.scale", &options->scale, {0, 10}, "times", "factor on the bytes of the images");
+  table.SetRenamed({{"echo.factor", "echo.scale"}});
+  return table;
+}
+
+inline std::unique_ptr<Node> MakeEchoNode(ConfigReader* config) {
+  return std::make_unique<EchoNode>(ReadOptions<EchoOptions>(config).scale);
 }
 
 }  // namespace airdos

@@ -17,12 +17,11 @@
 
 namespace airdos {
 
-/// A test of the whole chain in a network and a folder of its own. The folder is kept where the
-/// test failed.
+/// A test of the whole chain in its own network and folder. The folder is kept if the test fails.
 class FaultTest : public testing::Test {
  protected:
   static constexpr char kUrl[] = "udpm://239.255.76.67:7667?ttl=0";
-  static constexpr std::int64_t kSession = 1;  // of the sample log
+  static constexpr std::int64_t kSession = 1;  // session of the sample log
 
   void SetUp() override {
     const std::string obstacle = EnterPrivateNetwork(true);
@@ -38,7 +37,7 @@ class FaultTest : public testing::Test {
     if (!folder_.empty() && !HasFailure()) std::filesystem::remove_all(folder_);
   }
 
-  /// Nothing runs, nothing was recorded.
+  /// Starts without running processes or recordings.
   void StartAfresh() {
     chain_.reset();
     std::filesystem::remove_all(folder_);
@@ -52,7 +51,7 @@ class FaultTest : public testing::Test {
     return folder_ + "input.lcm";
   }
 
-  /// Listens until the player has ended and the recorder is done with the frame.
+  /// Listens until the player has ended and the recorder has finished the frame.
   void HearTheEnd(std::int64_t last_seq, std::int64_t session = kSession) {
     ChildProcess* player = chain_->process("airdos-stereo-player");
     EXPECT_TRUE(listener_->HearUntil([&] { return player->HasEnded(); }, LiveChain::kRun_s));
@@ -65,14 +64,14 @@ class FaultTest : public testing::Test {
         << chain_->AllErrors();
   }
 
-  /// Distance (m) of a frame's estimate from where the camera truly was; in W, not aligned.
+  /// Distance (m) of a frame's estimate from the true camera position; in W, not aligned.
   double Error_m(std::int64_t seq, std::int64_t session = kSession) const {
     static const std::map<std::int64_t, Se3> truth = SampleTruth();
     const state_estimate_t& state = listener_->states().at({session, seq});
     const Eigen::Vector3d p_W(state.position_W_C[0], state.position_W_C[1], state.position_W_C[2]);
     return (p_W - truth.at(seq).translation).norm();
   }
-  /// The worst of the frames `first` to `last` that have an estimate.
+  /// The largest error of the frames `first` to `last` that have an estimate.
   double WorstError_m(std::int64_t first, std::int64_t last) const {
     double worst_m = 0;
     for (std::int64_t seq = first; seq <= last; ++seq) {
@@ -81,7 +80,7 @@ class FaultTest : public testing::Test {
     return worst_m;
   }
 
-  /// Of a channel, as a process said in its last STATUS, which it also sends when it stops.
+  /// Counters of a channel in the last STATUS of a process, which it also sends when it stops.
   channel_status_t Counters(const std::string& program, const std::string& channel) const {
     const process_status_t& status = listener_->statuses().at(program);
     for (const channel_status_t& counters : status.channels) {

@@ -17,6 +17,7 @@
 #include "common/dataset/stereo_sequence.h"
 #include "common/human/assignment.h"
 #include "common/human/layouts.h"
+#include "common/util/quantile.h"
 #include "tests/support/crossing_truth.h"
 
 namespace airdos {
@@ -24,13 +25,7 @@ namespace {
 
 constexpr int kMinVisibleJoints = 5;
 constexpr double kMinHeightPx = 45;
-constexpr double kMaxMatchPerHeight = 0.15;  // mean distance of joints, of the height
-
-double Percentile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
+constexpr double kMaxMatchPerHeight = 0.15;  // mean distance of joints, relative to the height
 
 double Mean(const std::vector<double>& values) {
   return values.empty() ? 0
@@ -65,9 +60,9 @@ double DepthOf(const TruePerson& person) {
   return *Median(depths);
 }
 
-// Mean distance in px, over the joints both have, from a true person's projection, each joint at
-// most a tenth of the height so that outliers do not decide; nothing where it is not in front of
-// the camera.
+// Mean distance in px from a true person's projection, over the joints that both have. Each joint
+// counts at most a tenth of the height, to limit the influence of outliers. Nothing if the person
+// is not in front of the camera.
 std::optional<double> Distance(const StereoCamera& camera, const TruePerson& truth,
                                const BodyKeypoints& seen, bool is_right) {
   const double depth_m = DepthOf(truth);
@@ -91,7 +86,7 @@ std::optional<double> Distance(const StereoCamera& camera, const TruePerson& tru
   return best;
 }
 
-// Which true person each of the detections of one image is, one to one.
+// Finds the true person for each detection in one image, one-to-one.
 std::vector<std::optional<std::int64_t>> Identify(const StereoCamera& camera,
                                                   const TrueFrame& truth,
                                                   const std::vector<BodyKeypoints>& people,
@@ -121,8 +116,8 @@ void ScorePairing(const HumanTrackerOptions& options, const StereoCamera& camera
   for (const auto& identity : right) {
     if (identity && in_left.count(*identity) != 0) ++score->num_possible_pairs;
   }
-  for (const StereoPair& pair :
-       MatchStereo(options.matcher, camera, frame.left, frame.right).pairs) {
+  for (const PersonPair& pair :
+       PairPeople(options.matcher, camera, frame.left, frame.right).pairs) {
     ++score->num_pairs;
     const auto& other = right[static_cast<std::size_t>(pair.right)];
     if (!other || *other != truth.identity_left[static_cast<std::size_t>(pair.left)]) {
@@ -212,7 +207,7 @@ double HumanScore::PairRecall() const {
 
 double HumanScore::MeanJointError() const { return Mean(joint_error_m); }
 
-double HumanScore::MedianJointError() const { return Percentile(joint_error_m, 0.5); }
+double HumanScore::MedianJointError() const { return Quantile(joint_error_m, 0.5); }
 
 std::string HumanScore::TableHead() {
   return "sequence        paired% wrong% | found% false% joints swap% | err med  mean   <6m  6-12  "
@@ -228,12 +223,12 @@ std::string HumanScore::Table() const {
       "%4d %5d  %.3f %.3f %.3f | %5.1f %5.1f",
       name.c_str(), 100 * PairRecall(), percent(num_wrong_pairs, num_pairs),
       percent(num_visible_found, num_visible), percent(num_false, num_reported), num_joints,
-      percent(num_swapped_sides, num_reported), Percentile(joint_error_m, 0.5), MeanJointError(),
-      Percentile(joint_error_by_depth_m[0], 0.5), Percentile(joint_error_by_depth_m[1], 0.5),
-      Percentile(joint_error_by_depth_m[2], 0.5), Percentile(depth_bias_m, 0.5),
+      percent(num_swapped_sides, num_reported), Quantile(joint_error_m, 0.5), MeanJointError(),
+      Quantile(joint_error_by_depth_m[0], 0.5), Quantile(joint_error_by_depth_m[1], 0.5),
+      Quantile(joint_error_by_depth_m[2], 0.5), Quantile(depth_bias_m, 0.5),
       num_normalised == 0 ? 0 : sum_normalised_squared / (3 * num_normalised), identity.num_people,
       identity.num_switches, identity.idf1, identity.id_precision, identity.id_recall,
-      Percentile(frame_ms, 0.5), Percentile(frame_ms, 0.95));
+      Quantile(frame_ms, 0.5), Quantile(frame_ms, 0.95));
   return line.data();
 }
 
@@ -246,7 +241,7 @@ HumanScore ScoreCrossing(const HumanTrackerOptions& options, const std::string& 
   IdentityEvaluator identities;
   for (std::size_t k = 0; k < sequence->num_frames(); ++k) {
     const SequenceFrame file = sequence->Load(k);
-    const std::clock_t start = std::clock();  // of this process: others' load does not count
+    const std::clock_t start = std::clock();  // CPU time of this process, regardless of other load
     const PeopleFrame frame = ToPeopleFrame(file);
     const TrackedFrame tracked = tracker.Process(sequence->camera(), frame);
     score.frame_ms.push_back(1000.0 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);

@@ -21,7 +21,7 @@ namespace {
 
 const std::string kSampleLog = std::string(AIRDOS_SOURCE_DIR) + "/logs/road_crossing06.lcm";
 
-// A payload begins with the type's fingerprint, then utime, seq and session, all big-endian.
+// A payload starts with the type's fingerprint, then utime, seq and session, all big-endian.
 constexpr std::size_t kUtimeOffset = 8;
 constexpr std::size_t kSeqOffset = 16;
 constexpr std::size_t kSessionOffset = 24;
@@ -65,7 +65,7 @@ void WriteEvents(const std::vector<LogEvent>& events, const std::string& path) {
 }
 
 std::map<std::int64_t, Se3> SampleTruth() {
-  // The log has it in NED axes: forward, right, down; C is right, down, forward.
+  // In the log it is in NED axes: forward, right, down; C is right, down, forward.
   Eigen::Matrix3d R_C_N;
   R_C_N << 0, 1, 0, 0, 0, 1, 1, 0, 0;
   const Se3 T_C_N{Eigen::Quaterniond(R_C_N), Eigen::Vector3d::Zero()};
@@ -173,7 +173,7 @@ ChildProcess* LiveChain::Start(const std::string& program,
   command.push_back(std::string(AIRDOS_BINARY_DIR) + "/bin/" + program);
   command.insert(command.end(), arguments.begin(), arguments.end());
   command.insert(command.end(), {"--lcm-url", url_});
-  processes_.erase(program);  // first: its files are used again
+  processes_.erase(program);  // first, because its files are reused
   processes_[program] = std::make_unique<ChildProcess>(command, folder_ + program);
   return process(program);
 }
@@ -195,7 +195,7 @@ void LiveChain::StartNodes() {
 
 ChildProcess* LiveChain::StartPlayer(const std::string& data,
                                      const std::vector<std::string>& arguments) {
-  std::vector<std::string> all{"--data", data, "--no-check"};  // faults are played on purpose
+  std::vector<std::string> all{"--data", data, "--no-check"};  // faults are intended
   all.insert(all.end(), arguments.begin(), arguments.end());
   return Start("airdos-stereo-player", all);
 }

@@ -20,14 +20,15 @@
 
 namespace airdos {
 
-// The whole chain as real processes, fed with an excerpt of the sample log that a test may spoil,
-// and what a test hears of it. Deadlines are for machines under load: no result depends on them.
+// The whole chain as real processes, fed with an excerpt of the sample log that a test may corrupt,
+// and what a test receives from it. Deadlines allow for machines under load; no result depends on
+// them.
 
-/// Messages of the sample log's images `first` to `last`, in its order; the calibration of image 0
-/// comes first. As a test may change them: see SetHeader() and Erase().
+/// Messages of the sample log's images `first` to `last`, in its order, preceded by the calibration
+/// of image 0. A test may change them: see SetHeader() and Erase().
 std::vector<LogEvent> SampleEvents(std::int64_t first, std::int64_t last);
 void WriteEvents(const std::vector<LogEvent>& events, const std::string& path);
-/// Where the sample's camera truly was: T_W_C, W being the camera of image 0.
+/// The sample's true camera poses: T_W_C, where W is the camera of image 0.
 std::map<std::int64_t, Se3> SampleTruth();
 
 std::int64_t SeqOf(const LogEvent& event);
@@ -35,33 +36,33 @@ std::int64_t UtimeOf(const LogEvent& event);
 void SetUtime(std::int64_t utime, LogEvent* event);
 void SetSession(std::int64_t session, LogEvent* event);
 
-/// Everything that is said on one LCM URL.
+/// Receives everything that is published on one LCM URL.
 class BusListener {
  public:
-  using FrameKey = std::pair<std::int64_t, std::int64_t>;  ///< session, seq
+  using FrameKey = std::pair<std::int64_t, std::int64_t>;  ///< (session, seq)
 
   explicit BusListener(const std::string& url);
 
-  /// Listens until the condition holds; false if it does not after `deadline_s`.
+  /// Listens until the condition holds; false if it does not within `deadline_s`.
   bool HearUntil(const std::function<bool()>& condition, double deadline_s);
-  /// Takes in what has been said up to now.
+  /// Receives what has been published so far.
   void Hear();
 
-  /// STATE_ESTIMATE of each frame but those without a pose.
+  /// STATE_ESTIMATE of each frame, except those without a pose.
   const std::map<FrameKey, state_estimate_t>& states() const { return states_; }
   std::int64_t num_without_pose() const { return num_without_pose_; }
   /// Newest STATUS of each process, by name.
   const std::map<std::string, process_status_t>& statuses() const { return statuses_; }
   bool IsDone(const std::string& process, const FrameKey& frame) const;
   std::int64_t num_messages(const std::string& channel) const;
-  /// Newest image that was published.
+  /// Newest image published.
   std::int64_t newest_image() const { return newest_image_; }
-  /// Most estimates of other images that were heard between an image and its own estimate: how many
-  /// frames wait in the chain, whatever time they take.
+  /// Largest number of estimates for other images received between an image and its own estimate:
+  /// how many frames wait in the chain, however long they take.
   std::size_t max_estimates_behind() const { return max_estimates_behind_; }
-  /// Of the output channels, one line each: as FormatDigests() of a log.
+  /// Digests of the output channels, one line each, like FormatDigests() of a log.
   std::string digests() const;
-  /// People in a frame's HUMAN_OBSERVATIONS; -1 if it was not heard.
+  /// Number of people in a frame's HUMAN_OBSERVATIONS; -1 if it was not received.
   std::int64_t num_people(const FrameKey& frame) const;
 
  private:
@@ -86,33 +87,35 @@ class LiveChain {
   static constexpr double kStart_s = 60;
   static constexpr double kRun_s = 300;
 
-  /// Results and what the processes say go to `folder`, which must end with a slash and exist.
+  /// Results and output of the processes go to `folder`, which must exist and end with a slash.
   LiveChain(std::string folder, std::string url);
 
-  /// Arguments that every program gets when it is started from now on.
+  /// Arguments for every program started from now on.
   void SetNodeArguments(std::vector<std::string> arguments) {
     node_arguments_ = std::move(arguments);
   }
-  /// Runs what is started from now on through this command, such as nsenter of another namespace.
+  /// Prefixes programs started from now on with this command, such as nsenter for another
+  /// namespace.
   void SetLauncher(std::vector<std::string> launcher) { launcher_ = std::move(launcher); }
 
   static const std::vector<std::string>& NodePrograms();
   ChildProcess* Start(const std::string& program, const std::vector<std::string>& arguments);
-  /// `frontend`, say, as airdos-frontend; until it is READY. Fails the test if it never is.
+  /// Starts a node, such as `frontend` for airdos-frontend, and waits until it is READY. Fails the
+  /// test if it never is.
   void StartNode(const std::string& node, const std::vector<std::string>& arguments = {});
   void StartNodes();
   ChildProcess* StartPlayer(const std::string& data,
                             const std::vector<std::string>& arguments = {});
-  /// Ends the nodes in order, the recorder last; each must end with code 0.
+  /// Stops the nodes in order, the recorder last; each must end with code 0.
   void StopNodes();
-  /// No frame will get a pose that means anything, and the optimizer says so by its exit code.
+  /// No frame will get a meaningful pose, which the optimizer reports by its exit code.
   void ExpectInVain() { is_in_vain_ = true; }
 
   ChildProcess* process(const std::string& program) { return processes_.at(program).get(); }
-  /// What a process has said since it was started last.
+  /// The errors that a process has printed since it was last started.
   std::string Errors(const std::string& program) const { return processes_.at(program)->Errors(); }
   std::string AllErrors() const;
-  /// How many messages of a channel a process has missed, as it said when it stopped.
+  /// Number of messages on a channel that a process has missed, as reported when it stopped.
   std::int64_t NumMissing(const std::string& program, const std::string& channel) const;
   std::string map_path() const { return folder_ + "map/map.airdos"; }
   const std::string& folder() const { return folder_; }
@@ -126,7 +129,7 @@ class LiveChain {
   std::map<std::string, std::unique_ptr<ChildProcess>> processes_;
 };
 
-/// FormatDigests() of what airdos-replay makes of a log.
+/// FormatDigests() of airdos-replay's output for a log.
 std::string ReplayDigests(const std::string& log, const std::string& folder);
 
 }  // namespace airdos

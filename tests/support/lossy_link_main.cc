@@ -1,11 +1,11 @@
-// A bad cable between two network namespaces, in user space, as not every kernel has netem: hands
-// LCM's datagrams from the one to the other and back, late and not all of them. Which messages are
-// lost depends on the seed, their channel and their number, not on who speaks first.
+// A bad cable between two network namespaces, in user space because not every kernel has netem:
+// forwards LCM's datagrams between the two, with delay and losses. Which messages are lost depends
+// on the seed, their channel and their number, not on who sends first.
 //
 //   airdos-lossy-link PATH_OF_OTHER_NETWORK LOSS_PERCENT DELAY_MS SEED
 //
-// Says READY, and a line `lost CHANNEL SEQ` for each message (`lost a_part` for a piece of a large
-// one); ends with SIGTERM.
+// Prints READY, and a line `lost CHANNEL SEQ` for each lost message (`lost a_part` for a fragment
+// of a large one); stops on SIGTERM.
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -54,8 +54,8 @@ sockaddr_in Group() {
 struct End {
   int receiver = -1;
   int sender = -1;
-  in_port_t own_port = 0;  // of the sender: what comes from there is our own echo
-  std::deque<std::pair<Clock::time_point, Bytes>> waiting;  // to be sent here
+  in_port_t own_port = 0;  // of the sender: whatever comes from it is our own echo
+  std::deque<std::pair<Clock::time_point, Bytes>> waiting;  // to be sent in this network
 };
 
 End OpenEnd() {
@@ -84,7 +84,7 @@ End OpenEnd() {
   return end;
 }
 
-/// `CHANNEL SEQ` of a whole message: "LC02", number, channel, 0, fingerprint, utime, seq.
+/// `CHANNEL SEQ` of an unfragmented message: "LC02", number, channel, 0, fingerprint, utime, seq.
 std::string NameOf(const Bytes& datagram) {
   const bool is_whole = datagram.size() > 40 && std::memcmp(datagram.data(), "LC02", 4) == 0;
   const auto end =
@@ -136,7 +136,7 @@ class Link {
   double loss_;
   std::chrono::milliseconds delay_;
   unsigned seed_;
-  std::mt19937_64 parts_;  // of large messages: one after the other
+  std::mt19937_64 parts_;  // for fragments of large messages, in order
 };
 
 }  // namespace

@@ -8,8 +8,7 @@
 
 namespace airdos {
 
-/// A PNG of eight bits whose samples are indices into a palette, which OpenCV does not write; row
-/// after row.
+/// An 8-bit PNG whose samples are palette indices, row by row; OpenCV cannot write these.
 inline std::vector<std::uint8_t> PalettePng(const std::vector<png_color>& palette, int width,
                                             const std::vector<std::uint8_t>& indices,
                                             int interlacing = PNG_INTERLACE_NONE) {

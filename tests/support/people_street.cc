@@ -19,8 +19,8 @@ class Street {
  public:
   explicit Street(const PeopleStreetOptions& options) : options_(options), random_(options.seed) {}
 
-  /// The frames [0, num_frames), in an order of random numbers in which a longer street begins as a
-  /// shorter one.
+  /// Makes the frames [0, num_frames). Random numbers are drawn in such an order that a longer
+  /// street starts like a shorter one.
   BundleProblem Make(int num_frames) {
     BundleProblem problem;
     problem.camera = kCamera;
@@ -55,6 +55,7 @@ class Street {
     double heading_rad = 0, phase_rad = 0;
   };
 
+  /// One draw a statement, or several in braces: a call's arguments have no order.
   double Uniform(double from, double to) {
     return std::uniform_real_distribution<double>(from, to)(random_);
   }
@@ -69,7 +70,9 @@ class Street {
   void MakeScene() {
     for (int i = 0; i < options_.num_landmarks; ++i) {
       const double z = Uniform(5, 20);
-      landmarks_.emplace_back(Uniform(-0.6, 0.6) * z, Uniform(-0.4, 0.4) * z, z);
+      const double y = Uniform(-0.4, 0.4) * z;
+      const double x = Uniform(-0.6, 0.6) * z;
+      landmarks_.emplace_back(x, y, z);
     }
     for (int i = 0; i < options_.num_people; ++i) {
       const double heading_rad = Uniform(0, 2 * M_PI);
@@ -149,11 +152,11 @@ BundleProblem SlideWindow(const BundleOptions& solver, const PeopleStreetOptions
     std::vector<BundleProblem::JointState> joints;
     for (std::size_t j = 0; j < human.joints.size(); ++j) {
       BundleProblem::JointState joint = human.joints[j];
-      if (joint.frame == 0) continue;  // has left the people's window
+      if (joint.frame == 0) continue;  // it has left the people's window
       const std::vector<BundleProblem::JointState>& solved = before.humans[i].joints;
       if (j < solved.size()) {
         joint.p_W = solved[j].p_W;
-      } else {  // along its ray at the depth of the frame before
+      } else {  // along its ray, at its depth in the previous frame
         const Se3& T_W_C = problem.frames.back().T_W_C;
         const Eigen::Vector3d p_C = T_W_C.inverse() * (T_start_odometry * joint.p_W);
         const Eigen::Vector3d before_C = T_W_C.inverse() * solved[j - kNumJoints].p_W;

@@ -8,10 +8,10 @@
 
 namespace airdos {
 
-/// A street where everyone is seen by every frame, to measure how a solver scales.
+/// A street in which everyone is visible in every frame, to measure how a solver scales.
 struct PeopleStreetOptions {
   std::uint64_t seed = 1;
-  int num_frames = 20;  ///< of the window
+  int num_frames = 20;  ///< in the window
   int num_people = 30;
   int num_landmarks = 300;
   double step_s = 0.1;
@@ -21,12 +21,12 @@ struct PeopleStreetOptions {
   double odometry_sigma_rad = 0.002;
 };
 
-/// The window as a front end starts it: poses by odometry, points triangulated. Frame 0 is fixed.
+/// The window as started by a frontend: poses from odometry, points triangulated. Frame 0 is fixed.
 BundleProblem MakePeopleStreet(const PeopleStreetOptions& options);
 
-/// The window of one frame later: what is in both is as `solver` left it, frame 0 stays as a fixed
-/// key frame for the landmarks; the new frame starts by odometry, its joints at the depth of the
-/// frame before.
+/// The window one frame later: what both windows contain is as left by `solver`, and frame 0
+/// remains as a fixed key frame for the landmarks. The new frame starts from odometry, its joints
+/// at their depth in the previous frame.
 BundleProblem SlideWindow(const BundleOptions& solver, const PeopleStreetOptions& options);
 
 }  // namespace airdos

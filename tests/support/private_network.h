@@ -5,9 +5,9 @@
 
 namespace airdos {
 
-/// Moves this process (which must have one thread) and its children into a network of their own
-/// that has nothing but a loopback interface, with multicast if wanted, so that tests neither
-/// disturb nor hear anybody. Returns why that is impossible here, or an empty text.
+/// Moves this process (which must have a single thread) and its children into their own network
+/// with only a loopback interface, optionally with multicast, so that tests neither disturb others
+/// nor are disturbed. Returns why that is impossible, or an empty text.
 std::string EnterPrivateNetwork(bool with_multicast);
 
 }  // namespace airdos

@@ -56,6 +56,14 @@ class Maker {
   double Uniform(double from, double to) {
     return std::uniform_real_distribution<double>(from, to)(random_);
   }
+  /// Drawn one after the other, z first: the order of a call's arguments would be the compiler's.
+  Eigen::Vector3d InBox(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    Eigen::Vector3d p = from;
+    for (const int axis : {2, 1, 0}) {
+      if (from[axis] < to[axis]) p[axis] = Uniform(from[axis], to[axis]);
+    }
+    return p;
+  }
   bool Happens(double share) { return Uniform(0, 1) < share; }
   Eigen::Vector3d Noise(double sigma) {
     std::normal_distribution<double> normal(0, sigma);
@@ -68,7 +76,7 @@ class Maker {
     return Boxplus(T_W_C, delta);
   }
 
-  /// Fills the measurement of anything that has one.
+  /// Fills in the measurement of any kind of observation.
   template <class Observation>
   void Measure(const Eigen::Vector3d& p_W, Observation* observation) {
     const Eigen::Vector3d p_C =
@@ -82,7 +90,7 @@ class Maker {
   }
 
   void AddLandmark(int id) {
-    const Eigen::Vector3d p_W(Uniform(-4, 4), Uniform(-2, 2), Uniform(4, 15));
+    const Eigen::Vector3d p_W = InBox({-4, -2, 4}, {4, 2, 15});
     const bool is_fixed = Happens(options_.fixed_landmarks);
     problem_.landmarks.push_back(
         {LandmarkId{id}, is_fixed ? p_W : Eigen::Vector3d(p_W + Noise(0.1)), is_fixed});
@@ -132,8 +140,8 @@ class Maker {
     human.id = HumanId{id};
     human.motion_form = options_.person_motion;
     SetLengths(0.3, &human);
-    const Eigen::Vector3d start_W(Uniform(-3, 3), 0.5, Uniform(5, 9));
-    const Eigen::Vector3d velocity(Uniform(-1, 1), 0, Uniform(-1, 1));
+    const Eigen::Vector3d start_W = InBox({-3, 0.5, 5}, {3, 0.5, 9});
+    const Eigen::Vector3d velocity = InBox({-1, 0, -1}, {1, 0, 1});
     for (int k = 0; k < options_.num_frames; ++k) {
       std::vector<Eigen::Vector3d> points_W;
       for (const Eigen::Vector3d& joint : WalkerJoints(0.5 * k)) {
@@ -153,7 +161,7 @@ class Maker {
     object.motion_noise = MotionNoise{0.02, 1.0, 1.0};
     SetLengths(1.0, &object);
     std::vector<Eigen::Vector3d> points_W;
-    const Eigen::Vector3d centre_W(Uniform(-3, 3), 0.5, Uniform(6, 9));
+    const Eigen::Vector3d centre_W = InBox({-3, 0.5, 6}, {3, 0.5, 9});
     for (int i = 0; i < 6; ++i) {
       points_W.emplace_back(
           centre_W + Eigen::Vector3d(i & 1 ? 0.8 : -0.8, i & 2 ? 0.5 : -0.5, i & 4 ? 0.9 : -0.4));

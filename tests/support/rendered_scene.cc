@@ -1,5 +1,6 @@
 #include "tests/support/rendered_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -7,7 +8,8 @@
 namespace airdos {
 namespace {
 
-/// Well mixed bits of a lattice point (the finalizer of MurmurHash3 over a sum of odd multiples).
+/// Well-mixed bits for a lattice point (the finalizer of MurmurHash3 applied to a sum of odd
+/// multiples).
 double LatticeValue(std::uint32_t seed, std::int32_t x, std::int32_t y) {
   std::uint32_t bits = seed * 0x9e3779b1u + static_cast<std::uint32_t>(x) * 0x85ebca77u +
                        static_cast<std::uint32_t>(y) * 0xc2b2ae3du;
@@ -50,13 +52,19 @@ cv::Mat NoisePicture(int width, int height, std::uint32_t seed, double shift_u_p
 RenderedScene::RenderedScene(std::uint32_t seed) : seed_(seed) {
   boxes_.push_back({{-6, -2.4, -8}, {6, 1.6, 12}});
   std::mt19937 random(seed);
-  // Drawn from raw numbers: std::uniform_real_distribution differs between standard libraries.
+  // Computed from raw numbers: std::uniform_real_distribution differs between standard libraries.
+  // One draw per statement, as the evaluation order of arguments differs between compilers.
   const auto uniform = [&random](double low, double high) {
     return low + (high - low) * static_cast<double>(random()) / 4294967295.0;
   };
   for (const double x : {-4.0, -2.2, 0.2, 2.2, 4.2}) {
-    const Eigen::Vector3d size(uniform(0.6, 1.2), uniform(0.8, 2.6), uniform(0.5, 1.2));
-    const Eigen::Vector3d corner(x + uniform(-0.4, 0.4), 1.6 - size.y(), uniform(4, 8));
+    Eigen::Vector3d size, corner;
+    size.z() = uniform(0.5, 1.2);
+    size.y() = uniform(0.8, 2.6);
+    size.x() = uniform(0.6, 1.2);
+    corner.z() = uniform(4, 8);
+    corner.y() = 1.6 - size.y();
+    corner.x() = x + uniform(-0.4, 0.4);
     boxes_.push_back({corner, corner + size});
   }
 }

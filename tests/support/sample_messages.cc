@@ -1,15 +1,15 @@
 #include "tests/support/sample_messages.h"
 
+#include <vector>
+
+#include "processes/node/message/header.h"
+
 namespace airdos {
 namespace {
 
 template <class Message>
 Message WithHeader() {
-  Message message = {};
-  message.utime = 1000;
-  message.seq = 10;
-  message.session = 7;
-  return message;
+  return MessageOf<Message>({1000, 10, 7});
 }
 
 human_observation_t SampleHumanObservation() {

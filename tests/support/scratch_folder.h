@@ -13,7 +13,7 @@
 
 namespace airdos {
 
-/// A folder of one test, empty at first and removed at the end.
+/// A test's own folder, initially empty and removed at the end.
 class ScratchFolder {
  public:
   explicit ScratchFolder(const std::string& name)
@@ -32,7 +32,7 @@ class ScratchFolder {
   std::string path() const { return path_.string(); }
   std::string PathOf(const std::string& name) const { return (path_ / name).string(); }
 
-  /// Writes a file, with the folders above it; returns its path.
+  /// Writes a file, creating the folders above it; returns its path.
   std::string Write(const std::string& name, const std::string& content = "") const {
     std::filesystem::create_directories((path_ / name).parent_path());
     std::ofstream(path_ / name, std::ios::binary) << content;

@@ -7,31 +7,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "tests/support/rendered_scene.h"
+#include "tests/support/standing_person.h"
 
 namespace airdos {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A person who faces the camera, 100 px tall, COCO-18 order: where each joint is beside the neck.
-constexpr std::array<std::array<double, 2>, 18> kStanding = {{{0, -12},
-                                                              {0, 0},
-                                                              {-10, 1},
-                                                              {-14, 18},
-                                                              {-15, 34},
-                                                              {10, 1},
-                                                              {14, 18},
-                                                              {15, 34},
-                                                              {-6, 32},
-                                                              {-7, 58},
-                                                              {-7, 84},
-                                                              {6, 32},
-                                                              {7, 58},
-                                                              {7, 84},
-                                                              {-2, -14},
-                                                              {2, -14},
-                                                              {-4, -13},
-                                                              {4, -13}}};
 
 SmallSequence::Row PersonAt(double u_px, double v_px) {
   SmallSequence::Row row;
@@ -39,7 +20,7 @@ SmallSequence::Row PersonAt(double u_px, double v_px) {
   return row;
 }
 
-/// The mask of a detector: the skeleton, thick.
+/// A detector's mask: the skeleton with thick lines.
 void Paint(const SmallSequence::Row& person, cv::Mat* mask) {
   constexpr std::array<std::array<int, 2>, 14> kBones = {{{0, 1},
                                                           {1, 2},

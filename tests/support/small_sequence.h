@@ -13,29 +13,30 @@
 
 namespace airdos {
 
-/// A sequence of the TartanAir-Shibuya layout, sound in every way, whose parts a test spoils before
-/// it is written: a camera sways through a rendered room, two people stand before it.
+/// A sequence in the TartanAir-Shibuya layout, valid in every respect, whose parts a test corrupts
+/// before it is written: a camera sways through a rendered room with two people in front of it.
 struct SmallSequence {
   static constexpr int kNumFrames = 14;
-  using Row = std::vector<std::array<double, 3>>;  ///< u, v (px), confidence of a person
+  /// u, v (px) and confidence of each joint of a person.
+  using Row = std::vector<std::array<double, 3>>;
 
   StereoCamera camera;               ///< of the images
-  std::string calib_json;            ///< what the file says
+  std::string calib_json;            ///< content of the file
   std::vector<std::string> times_s;  ///< as text
   std::vector<cv::Mat> left;         ///< CV_8UC1
   std::vector<cv::Mat> right;
-  std::vector<cv::Mat> masks;                 ///< CV_8UC1; empty: no file
-  std::vector<std::vector<Row>> people_left;  ///< by frame
+  std::vector<cv::Mat> masks;                 ///< CV_8UC1; no file if empty
+  std::vector<std::vector<Row>> people_left;  ///< indexed by frame
   std::vector<std::vector<Row>> people_right;
   std::vector<Se3> T_W_C;  ///< optical axes
   std::string image_ending = ".png";
   int jpeg_quality = 95;
 
-  /// Renders the sequence; the same every time.
+  /// Renders the sequence, identically every time.
   static SmallSequence Make();
   void SetCalibration(const StereoCamera& said);
-  /// Writes the folder anew. Ground truth: gt_pose.txt in NED, each row passed through `spoil`,
-  /// which gets t, position and rotation in NED.
+  /// Writes the folder from scratch. Ground truth: gt_pose.txt in NED, each row passed through
+  /// `spoil`, which gets t, position and rotation in NED.
   void Write(const std::filesystem::path& folder,
              const std::function<void(Eigen::Vector3d*, Eigen::Matrix3d*)>& spoil = {}) const;
 };

@@ -17,8 +17,8 @@ using Joints3d = std::array<Eigen::Vector3d, kNumJoints>;
 
 inline const StereoCamera kTestCamera{640, 360, 770, 770, 320, 180, 0.25};
 
-/// A walking person in C whose hips are at `root`, seen from behind; `phase` in rad swings the
-/// limbs, `scale` makes it taller.
+/// A walking person in C with the hips at `root`, seen from behind; `phase` in rad swings the
+/// limbs, `scale` makes the person taller.
 inline Joints3d WalkingPerson(const Eigen::Vector3d& root, double phase, double scale = 1) {
   const double swing = 0.18 * std::sin(phase);
   Joints3d joints = {{{0, -.72, 0},
@@ -39,8 +39,8 @@ inline Joints3d WalkingPerson(const Eigen::Vector3d& root, double phase, double 
   return joints;
 }
 
-/// What a detector with the given noise gives of a person in one image. Joints outside the image
-/// are given as well.
+/// A detector's output, with the given noise, for a person in one image. Includes joints outside
+/// the image.
 inline BodyKeypoints Detect(const StereoCamera& camera, const Joints3d& joints, bool is_right,
                             double sigma_px, std::mt19937* random) {
   std::normal_distribution<double> noise(0, 1);

@@ -15,6 +15,8 @@ double Normal(Generator* generator, double sigma) {
   return sigma > 0 ? std::normal_distribution<double>(0, sigma)(*generator) : 0.0;
 }
 
+/// One draw a statement, or several in braces: the order of a call's arguments is the compiler's
+/// choice, and so would be the scene.
 double Uniform(Generator* generator, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(*generator);
 }
@@ -89,7 +91,9 @@ void ObservePeople(const SyntheticSceneOptions& options, const SyntheticScene& s
 
 void AddWalkers(const SyntheticSceneOptions& options, Generator* generator, SyntheticScene* scene) {
   for (int person = 0; person < options.num_people; ++person) {
-    const Eigen::Vector3d start(Uniform(generator, -3, 3), 1.0, Uniform(generator, 6, 12));
+    Eigen::Vector3d start(0, 1, 0);
+    start.z() = Uniform(generator, 6, 12);
+    start.x() = Uniform(generator, -3, 3);
     double heading_rad = Uniform(generator, 0, 2 * M_PI);
     const double phase_rad = Uniform(generator, 0, 2 * M_PI);
     const double turn_rad_s = Uniform(generator, -0.1, 0.1);

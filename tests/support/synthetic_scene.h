@@ -12,8 +12,8 @@
 
 namespace airdos {
 
-/// A street seen from a moving stereo camera, with people who walk through it. World axes as the
-/// first camera's: x right, y down, z forward, m.
+/// A street seen from a moving stereo camera, with people walking through it. The world has the
+/// axes of the first camera: x right, y down, z forward, m.
 struct SyntheticSceneOptions {
   std::uint32_t seed = 1;
   int num_frames = 20;
@@ -22,20 +22,21 @@ struct SyntheticSceneOptions {
   double nearest_m = 4, farthest_m = 30;
   int max_static_per_frame = 250;
   int num_people = 0;
-  double speed_m_s = 1.0;  ///< camera, forward on a curve
+  double speed_m_s = 1.0;  ///< of the camera, forward along a curve
   double person_speed_m_s = 1.2;
-  double sigma_px = 0.5;           ///< noise of static observations; 0: exact
-  double joint_sigma_px = 1.0;     ///< noise of joints; 0: exact
-  double odometry_sigma_m = 0.01;  ///< noise of the front end's steps, per axis
+  double sigma_px = 0.5;           ///< noise of static observations; 0 if exact
+  double joint_sigma_px = 1.0;     ///< noise of joints; 0 if exact
+  double odometry_sigma_m = 0.01;  ///< noise of the frontend's steps, per axis
   double odometry_sigma_rad = 0.002;
-  double outlier_ratio = 0;  ///< of static observations
-  double mono_ratio = 0;     ///< of static observations: without a right image
+  double outlier_ratio = 0;  ///< share of static observations
+  double mono_ratio = 0;     ///< share of static observations without a right image
 };
 
+/// A simulated street and what is measured in it.
 struct SyntheticScene {
   StereoCamera camera;
-  std::vector<Se3> T_W_C;                        ///< truth, the first is the identity
-  std::vector<FrameInput> frames;                ///< what an optimizer would be given
+  std::vector<Se3> T_W_C;                        ///< truth; the first pose is the identity
+  std::vector<FrameInput> frames;                ///< input for an optimizer
   std::vector<Eigen::Vector3d> static_points_W;  ///< landmark id = index
   /// joints_W[person][frame][joint]; person id = index + 1
   std::vector<std::vector<std::array<Eigen::Vector3d, kNumJoints>>> joints_W;
@@ -43,11 +44,11 @@ struct SyntheticScene {
 
 SyntheticScene MakeSyntheticScene(const SyntheticSceneOptions& options);
 
-/// Joints of a walking person in its own axes: hips' middle above the origin, y down, walking along
-/// +x; limbs swing with `phase_rad`, segments keep their lengths.
+/// Joints of a walking person in local axes: origin below the middle of the hips, y down, walking
+/// along +x. Limbs swing with `phase_rad`; segments keep their lengths.
 std::array<Eigen::Vector3d, kNumJoints> WalkerJoints(double phase_rad);
 
-/// Root mean square distance of positions, without alignment: both start at the same pose.
+/// RMS distance of positions, without alignment: both start at the same pose.
 double RmsPositionError(const std::vector<Se3>& estimate, const std::vector<Se3>& truth);
 
 }  // namespace airdos

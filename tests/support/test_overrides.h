@@ -9,9 +9,9 @@
 
 namespace airdos {
 
-/// What `AIRDOS_TEST_SET` says, if it is set: overrides as of airdos-replay --set
-/// (process:section.key=value), separated by spaces. To see how far the figures of a test on data
-/// go when little is changed.
+/// The overrides in `AIRDOS_TEST_SET`, if set, as for airdos-replay --set
+/// (process:section.key=value), separated by spaces. For exploring how sensitive the figures of a
+/// test on data are.
 inline std::vector<std::string> TestOverrides() {
   const char* const text = std::getenv("AIRDOS_TEST_SET");
   std::istringstream words(text != nullptr ? text : "");

@@ -48,10 +48,10 @@ wrong_options_exit_2_in_one_line() {
   expect 2 "--live: 'maybe' is neither yes nor no" "$scripts/benchmark/benchmark_speed.sh" "$work" --live maybe
   expect 2 "--loops: not a whole number above 0: '0'" "$scripts/benchmark/benchmark_memory.sh" "$work" --loops 0
   mkdir -p "$work/a/same" "$work/b/same"
-  expect 2 "two sequences have the name 'same'" "$scripts/benchmark/benchmark_perturbed.sh" "$work/a/same/" "$work/b/same"
+  expect 2 "two sequences are named 'same'" "$scripts/benchmark/benchmark_perturbed.sh" "$work/a/same/" "$work/b/same"
   expect 2 "more than one folder" "$scripts/benchmark/benchmark_shibuya.sh" "$work/a" "$work/b"
-  expect 2 "holds no sequence" "$scripts/benchmark/benchmark_shibuya.sh" "$work/a"
-  expect 2 "holds none of the sequences" "$scripts/benchmark/benchmark_kitti_tracking.sh" "$work/a"
+  expect 2 "contains no sequence" "$scripts/benchmark/benchmark_shibuya.sh" "$work/a"
+  expect 2 "contains none of the sequences" "$scripts/benchmark/benchmark_kitti_tracking.sh" "$work/a"
 }
 
 # Stand-ins: airdos-replay writes down its arguments; airdos-evaluate gives an ATE that depends on the run. A folder named
@@ -130,6 +130,10 @@ people_help_runs_each_cap_in_both_modes() {
   (($(calls '--gt-axes y,-z,x') == 6)) || fail "the axes are not those of the uncapped run: $(cat "$work/calls")"
   grep -qF '{"sequence":"one","mode":"on","max_observations":3,"frames":100,"frames_lost":4' "$work/run/runs.jsonl" ||
     fail "rows: $(cat "$work/run/runs.jsonl")"
+  (($(calls 'sets/one --run-dir') == 4)) || fail "the uncapped run is made twice: $(cat "$work/calls")"
+  run 0 benchmark_people_help "$work/sets/one" --caps 3
+  says "curve of 2 runs" # the uncapped one only gives the axes
+  (($(calls 'sets/one --run-dir') == 3)) || fail "runs: $(cat "$work/calls")"
   run 1 benchmark_people_help "$work/sets/one" "$work/sets/broken" --caps 3
   says "broken, uncapped, mask_only: airdos-replay failed"
 }
@@ -152,9 +156,9 @@ shibuya_says_what_is_missing_failed_or_ambiguous() {
   says "not in '$base': Standing02 RoadCrossing04 RoadCrossing05 RoadCrossing06 RoadCrossing07"
   says '- Standing01: y,-z,x, left-handed; AMBIGUOUS, with masks this gives 0.01 m, but as well fit NED with 0.5 m'
   says '- tilted: not found out'
-  says 'tilted, on: no figures, because the run with masks has none'
+  says "tilted, on: no figures, because $work/run/tilted/mask_only/evaluation.json is missing"
   mkdir -p "$base/again/standing-01"/{image_0,image_1}
-  expect 2 "'Standing01' is there twice" env AIRDOS_BIN="$work/bin" "$scripts/benchmark/benchmark_shibuya.sh" "$base"
+  expect 2 "'Standing01' exists twice" env AIRDOS_BIN="$work/bin" "$scripts/benchmark/benchmark_shibuya.sh" "$base"
 }
 
 kitti_tracking_takes_28_from_testing() {
@@ -179,7 +183,8 @@ speed_runs_in_one_thread_and_in_several() {
 }
 
 sequences_prints_a_row_a_run() {
-  run 0 benchmark_sequences "$work/sets/one" --modes mask_only
+  run 0 benchmark_sequences "$work/sets/one" "$work/sets/of two words" --modes mask_only
+  says '| of two words | mask_only | 98 / 100 |'
   says '| one | mask_only | 98 / 100 | 0.0100 | 0.0020 | 0.2000 | 1.00 | 1 / 2 / 3 |'
 }
 
@@ -187,7 +192,7 @@ command -v jq > /dev/null || {
   echo "SKIPPED: no jq"
   exit 77
 }
-mkdir -p "$work"/sets/{one,two,broken}
+mkdir -p "$work"/sets/{one,two,broken,"of two words"}
 make_programs
 export AIRDOS_BIN=$work/bin
 wrong_options_exit_2_in_one_line

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -35,7 +38,8 @@ class CommandLineTest : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   static std::vector<std::string> Programs() {
-    const std::set<std::string> only_for_tests = {"airdos-echo", "airdos-lossy-link"};
+    const std::set<std::string> only_for_tests = {"airdos-echo", "airdos-lossy-link",
+                                                  "airdos-message-judge"};
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(fs::path(AIRDOS_BINARY_DIR) / "bin")) {
       const std::string name = entry.path().filename().string();
@@ -137,6 +141,30 @@ TEST_F(CommandLineTest, WhoeverWritesFilesKnowsForce) {
   }
 }
 
+// What one starts an own configuration from is the file that is installed, comments and all.
+TEST_F(CommandLineTest, EachProcessPrintsItsConfigurationAndWhatItMeans) {
+  const std::map<std::string, std::string> configs = {{"airdos-frontend", "frontend"},
+                                                      {"airdos-human-tracker", "human_tracker"},
+                                                      {"airdos-map-recorder", "map_recorder"},
+                                                      {"airdos-optimizer", "optimizer"},
+                                                      {"airdos-stereo-player", "stereo_player"}};
+  for (const auto& [program, config] : configs) {
+    std::ifstream file(AIRDOS_SOURCE_DIR "/launch_scripts/config/" + config + ".yaml");
+    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    const Answer printed = Run(program, {"--print-config"});
+    EXPECT_EQ(printed.exit_code, 0) << program;
+    EXPECT_EQ(printed.output, text) << program;
+    EXPECT_EQ(printed.errors, "") << program;
+    const Answer reference = Run(program, {"--help-config"});
+    EXPECT_EQ(reference.exit_code, 0) << program;
+    EXPECT_NE(reference.output.find(" to "), std::string::npos) << program;
+    const Answer refused = Run(program, {"--print-config", "--set", "a.b=1"});
+    EXPECT_EQ(refused.exit_code, 2) << program;
+    EXPECT_EQ(refused.output, "") << program;
+    EXPECT_EQ(refused.errors, program + ": --print-config excludes --set\n");
+  }
+}
+
 TEST_F(CommandLineTest, EachProgramSaysItsVersionAndCommit) {
   for (const std::string& program : Programs()) {
     for (std::vector<std::string> arguments : CommandsOf(program)) {
@@ -177,7 +205,7 @@ TEST_F(CommandLineTest, MistypedCommandsAndChoicesAreAnswered) {
   EXPECT_EQ(Run("airdos-replay", {"a", "b"}).errors,
             "airdos-replay: one argument too many: 'b' (see --help)\n");
   EXPECT_EQ(Run("airdos-replay", {"a", "--log", "b"}).errors,
-            "airdos-replay: one input only: 'a' or 'b'\n");
+            "airdos-replay: only one input is possible: 'a' or 'b'\n");
   for (const char* program : {"airdos-replay", "airdos-check", "airdos-stereo-player"}) {
     const Answer answer = Run(program, {});
     EXPECT_EQ(answer.exit_code, 2);

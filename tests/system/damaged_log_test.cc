@@ -204,7 +204,7 @@ TEST_F(DamagedLogTest, AFlippedBitOfAHeaderCostsOneMessage) {
   WriteLog();
   const std::string text = Replayed();
   ExpectSaid(text, "frames: 8, with a pose: 8");
-  ExpectSaid(text, "in.lcm: 3 messages left out");
+  ExpectSaid(text, "in.lcm: 3 messages skipped");
   ExpectSaid(text, "frontend: CAMERA_LEFT: 1 missing");
   ExpectSaid(text, "frontend: CAMERA_RIGHT: 1 missing");
   EXPECT_EQ(text.find("duplicate or late"), std::string::npos) << text;
@@ -242,7 +242,7 @@ TEST_F(DamagedLogTest, TypesThatAreWrongAreSaidBeforeARun) {
   SetBytes(bytes);
   const std::string text = Replayed(2, /*check=*/"");
   ExpectSaid(text, "a message on PERSON_MASK has type fingerprint 0x");
-  ExpectSaid(text, "--no-check goes on all the same");
+  ExpectSaid(text, "--no-check continues anyway");
 }
 
 /// Capture times that nobody may wait for: the log itself is whole.
@@ -258,7 +258,7 @@ TEST_F(JumpingClockTest, RealtimeDoesNotWaitForTheFarFutureOrThePast) {
   };
   WriteLog();
   const std::string text = Played({"--pace", "realtime"});
-  ExpectSaid(text, "capture time jumps by 2.31e+12 s at image 2: going on without a wait");
+  ExpectSaid(text, "capture time jumps by 2.31e+12 s at image 2: continuing without waiting");
   ExpectSaid(text, "at image 3");
   ExpectSaid(text, "capture time jumps by -1.3 s at image 4");
   ExpectSaid(text, "at image 6");

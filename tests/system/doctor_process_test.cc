@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
 
 #include "airdos/pose_t.hpp"
@@ -95,7 +96,7 @@ TEST_F(DoctorProcessTest, ASoundNetworkHasNoFailure) {
   ExpectLine("OK   network.route: 239.255.76.67 is routed over lo");
   ExpectLine("OK   network.interface: lo is up and has MULTICAST");
   ExpectLine("OK   network.ttl: ttl=0: messages stay on this host");
-  ExpectLine("OK   bus.port: nobody speaks on port 7667");
+  ExpectLine("OK   bus.port: nobody sends on port 7667");
   ExpectLine(" bus.round_trip: 0 of ");
   EXPECT_EQ(output_.find("FAIL"), std::string::npos) << output_;
   std::ifstream file(json);
@@ -161,7 +162,7 @@ TEST_F(DoctorProcessTest, ARunOfOtherTypes) {
     other.Publish("STATUS", status.data(), status.size());
   };
   EXPECT_EQ(RunDoctor({"--round-trip", "always", "--round-trip-s", "0.2"}, say), 1);
-  ExpectLine("STATUS messages do not decode");
+  ExpectLine("STATUS messages cannot be decoded");
   ExpectLine("airdos-optimizer (4711) was built with other message types (0123456789abcdef, here " +
              TypesFingerprint());
   ExpectLine("WARN bus.port: port 7667 is in use: STATUS");

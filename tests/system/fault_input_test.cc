@@ -199,6 +199,78 @@ INSTANTIATE_TEST_SUITE_P(Channels, SilentDetectorTest,
                                          std::vector<std::string>{channel::kPersonMask}),
                          [](const auto& instance) { return instance.param.front(); });
 
+// Nobody ever publishes people, as with a driver that forgets to. Lost: people. The first frame
+// waits for them, and this is said once of each channel; the others go on without.
+TEST_F(FaultInputTest, WithADetectorThatNeverSpokeTheChainGoesOnAndSaysSo) {
+  const auto events =
+      Without({channel::kPersonKeypointsLeft, channel::kPersonKeypointsRight, channel::kPersonMask},
+              kLast, [](std::int64_t) { return true; });
+  ASSERT_NO_FATAL_FAILURE(Play(events, "3"));
+  ExpectAnEstimateOfEachFrame();
+  EXPECT_LT(Error_m(kLast), 0.15);
+  for (const std::string program : {"airdos-frontend", "airdos-human-tracker"}) {
+    const std::string said = chain_->Errors(program);
+    const std::size_t place = said.find("nothing on PERSON_");
+    ASSERT_NE(place, std::string::npos) << said;
+    EXPECT_EQ(said.find("nothing on PERSON_", place + 1), std::string::npos) << "once: " << said;
+  }
+}
+
+// People are switched off. Nobody waits for what nobody publishes, and the human tracker need not
+// run.
+TEST_F(FaultInputTest, WithPeopleOffTheHumanTrackerIsNotNeeded) {
+  const auto events =
+      Without({channel::kPersonKeypointsLeft, channel::kPersonKeypointsRight, channel::kPersonMask},
+              kLast, [](std::int64_t) { return true; });
+  chain_->SetNodeArguments({"--deadline-s", "200"});
+  ASSERT_NO_FATAL_FAILURE(chain_->StartNode(
+      "airdos-frontend", {"--set", "people.use=false", "--set", "masks.use=false"}));
+  ASSERT_NO_FATAL_FAILURE(chain_->StartNode("airdos-optimizer", {"--set", "people.mode=off"}));
+  ASSERT_NO_FATAL_FAILURE(chain_->StartNode("airdos-map-recorder"));
+  chain_->StartPlayer(Write(events));
+  HearTheEnd(kLast);
+  StopAndHear();
+  ExpectAnEstimateOfEachFrame();
+  EXPECT_LT(Error_m(kLast), 0.15);
+  for (const std::string program : {"airdos-frontend", "airdos-optimizer"}) {
+    EXPECT_EQ(listener_->statuses().at(program).num_frames_incomplete, 0) << program;
+  }
+}
+
+/// Where airdos-replay says that the camera is in each frame of a log.
+std::vector<Eigen::Vector3d> ReplayedPositions(const std::string& log, const std::string& folder) {
+  ReplayDigests(log, folder);
+  std::vector<Eigen::Vector3d> positions;
+  EventLogReader reader(folder + "replayed.lcm");
+  for (auto event = reader.Next(); event; event = reader.Next()) {
+    if (event->channel != channel::kStateEstimate) continue;
+    state_estimate_t estimate = {};
+    EXPECT_TRUE(Decode(event->payload.data(), event->payload.size(), &estimate));
+    positions.emplace_back(Eigen::Map<const Eigen::Vector3d>(estimate.position_W_C));
+  }
+  return positions;
+}
+
+// A camera's clock may count from 1970, or from when it was switched on. Lost: a double of seconds
+// since 1970 is exact to 0.24 us, in which whoever carries a camera moves by less than 1 um.
+TEST_F(FaultInputTest, ItDoesNotMatterFromWhereTimesCount) {
+  constexpr std::int64_t kNumImages = 10;
+  constexpr std::int64_t kSince1970_us = 1795000000000000;
+  constexpr double kRounding_m = 1e-6;
+  const auto replay = [&](std::int64_t origin_us) {
+    std::vector<LogEvent> events = SampleEvents(0, kNumImages - 1);
+    for (LogEvent& event : events) SetUtime(UtimeOf(event) + origin_us, &event);
+    return ReplayedPositions(Write(events), folder_);
+  };
+  const auto since_start = replay(0);
+  const auto since_1970 = replay(kSince1970_us);
+  ASSERT_EQ(since_start.size(), static_cast<std::size_t>(kNumImages));
+  ASSERT_EQ(since_1970.size(), since_start.size());
+  for (std::size_t i = 0; i < since_start.size(); ++i) {
+    EXPECT_LT((since_1970[i] - since_start[i]).norm(), kRounding_m) << i;
+  }
+}
+
 // The calibration comes with frame 3. Lost: nothing, the frames before wait for it.
 TEST_F(FaultInputTest, FramesWaitForALateCalibration) {
   std::vector<LogEvent> events = SampleEvents(0, kLast);

@@ -24,7 +24,8 @@ fail() {
 everything_is_where_users_look() {
   local file
   for file in share/doc/airdos/{LICENSE,THIRD_PARTY_LICENSES.md,README.md} share/airdos/lcmtypes/image_t.lcm \
-    share/airdos/scripts/{run_live,replay_log,spy,network_setup}.sh; do
+    share/airdos/scripts/{run_live,replay_log,spy,network_setup,keep_map}.sh share/airdos/logs/road_crossing06.lcm \
+    {bin,share/bash-completion/completions}/airdos-{run-live,replay-log,spy,network-setup,keep-map,check}; do
     [[ -s $prefix/$file ]] || fail "$file is not installed"
   done
   if [[ $has_jar == JAR ]]; then [[ -s $prefix/share/java/airdos.jar ]] || fail "airdos.jar is not installed"; fi

@@ -55,10 +55,10 @@ make_root() {
 # figures PROCESS DONE INCOMPLETE SKIPPED MISSING LATE: what it says at its end, of two cameras; the image numbers are of the left one.
 figures() {
   cat > "$work/figures/$1.log" << LOG
-airdos-$1: stopped; frames done $2, incomplete $3, skipped $4
-airdos-$1: latency p50 12.5 ms, p99 40.5 ms
-airdos-$1: CAMERA_LEFT: received $2, missing $5, duplicate $6, rejected 0
-airdos-$1: CAMERA_RIGHT: received $2, missing 0, duplicate 0, rejected 0
+2026-03-01T12:34:56.789Z airdos-$1: info: stopped; frames done $2, incomplete $3, skipped $4
+2026-03-01T12:34:56.789Z airdos-$1: info: latency p50 12.5 ms, p99 40.5 ms
+2026-03-01T12:34:56.789Z airdos-$1: info: CAMERA_LEFT: received $2, missing $5, duplicate $6, rejected 0
+2026-03-01T12:34:56.789Z airdos-$1: info: CAMERA_RIGHT: received $2, missing 0, duplicate 0, rejected 0
 LOG
 }
 
@@ -119,7 +119,7 @@ lost_frames_fail_above_the_limit() {
 lost_images_fail_whatever_the_limit() {
   good_figures
   figures map-recorder 100 0 0 3 2
-  long_run 1 'camera images were lost on their way: see airdos-doctor' --max-lost 100
+  long_run 1 'camera images were lost in transit: see airdos-doctor' --max-lost 100
   figures map-recorder 100 0 0 3 3
   long_run 0 '' --max-lost 100
 }

@@ -7,7 +7,7 @@ set -euo pipefail
 readonly EXIT_SKIPPED=77
 
 if ! unshare -n true 2> /dev/null && ! unshare -r -n true 2> /dev/null; then
-  echo "SKIPPED: cannot make a network namespace (no root, no user namespaces)"
+  echo "SKIPPED: cannot create a network namespace (no root, no user namespaces)"
   exit "$EXIT_SKIPPED"
 fi
 AIRDOS_BIN=$2/bin exec "$1/launch_scripts/long_run.sh" --minutes 2 --pace lockstep --run-dir "$2/long_run"

@@ -20,6 +20,7 @@
 #include "airdos/process_status_t.hpp"
 #include "airdos/stereo_calibration_t.hpp"
 #include "processes/node/live/lcm_transport.h"
+#include "processes/node/live/process_usage.h"
 #include "processes/node/log/event_log.h"
 #include "processes/node/message/codec.h"
 #include "processes/node/message/validate.h"
@@ -206,7 +207,7 @@ TEST_F(PlayerProcessTest, GoesOnWithoutAProcessThatIsKilled) {
   EXPECT_EQ(player->Wait(kDeadline_s), 0) << player->Errors();
   EXPECT_NE(player->Errors().find("waiting for airdos-echo to finish a frame"), std::string::npos)
       << player->Errors();
-  EXPECT_NE(player->Errors().find("airdos-echo is silent for 10 s: going on without it"),
+  EXPECT_NE(player->Errors().find("airdos-echo is silent for 10 s: continuing without it"),
             std::string::npos)
       << player->Errors();
 }
@@ -219,7 +220,7 @@ TEST_F(PlayerProcessTest, GoesOnWhenAProcessStopsCleanly) {
   ASSERT_TRUE(HearUntil([&] { return echoes_.size() >= 10; }));
   echo->Signal(SIGTERM);
   EXPECT_EQ(player->Wait(kDeadline_s), 0) << player->Errors();
-  EXPECT_NE(player->Errors().find("airdos-echo has stopped: going on without it"),
+  EXPECT_NE(player->Errors().find("airdos-echo has stopped: continuing without it"),
             std::string::npos)
       << player->Errors();
 }
@@ -325,6 +326,8 @@ TEST_F(PlayerProcessTest, BadInputIsOneLineAndExit2) {
   ExpectOneLine("airdos-echo", {"--config", "/nowhere.yaml"}, "/nowhere.yaml");
   ExpectOneLine("airdos-echo", {"--config", config, "--set", "echo.scale=99"}, "echo.scale");
   ExpectOneLine("airdos-echo", {"--config", config, "--set", "echo.none=1"}, "echo.none");
+  ExpectOneLine("airdos-echo", {"--config", config, "--set", "echo.factor=1"},
+                "'echo.factor' is called 'echo.scale' now");
   ExpectOneLine("airdos-echo", {"--config", config, "--pace", "fast"}, "fast");
   ExpectOneLine("airdos-echo", {"--config", config, "--deadline-s", "soon"}, "--deadline-s");
   ExpectOneLine("airdos-echo", {"--config", config, "--lcm-url", "foo://x"}, "foo://x");
@@ -355,6 +358,29 @@ TEST_F(PlayerProcessTest, WithoutMulticastRouteItSaysWhatToDo) {
   if (IsSkipped()) return;
   ExpectOneLine("airdos-echo", {"--config", (folder_ / "echo.yaml").string()}, "network_setup.sh");
   ExpectOneLine("airdos-stereo-player", {"--data", MakeData(1)}, "network_setup.sh");
+}
+
+TEST_F(PlayerProcessTest, AFolderIsASessionOfTheWallClockAndALogKeepsItsOwn) {
+  const auto session_of = [&](const std::string& data) {
+    const std::string path = (folder_ / "session.log").string();
+    const auto player =
+        Start("airdos-stereo-player", {"--data", data, "--write-log", path, "--force"});
+    EXPECT_EQ(player->Wait(kDeadline_s), 0) << player->Errors();
+    image_t image = {};
+    EventLogReader reader(path);
+    for (std::optional<LogEvent> event = reader.Next(); event; event = reader.Next()) {
+      if (event->channel != "CAMERA_LEFT") continue;
+      EXPECT_TRUE(Decode(event->payload.data(), event->payload.size(), &image));
+    }
+    return image.session;
+  };
+  const std::string data = MakeData(2);
+  const std::int64_t before = WallClock_us();
+  const std::int64_t session = session_of(data);
+  EXPECT_GE(session, before);
+  EXPECT_LE(session, WallClock_us());
+  fs::rename(folder_ / "session.log", folder_ / "of_a_camera.log");
+  EXPECT_EQ(session_of((folder_ / "of_a_camera.log").string()), session);
 }
 
 TEST_F(PlayerProcessTest, TheSameFramesGiveTheSameLog) {

@@ -10,6 +10,8 @@ set_tests_properties(long_run_ends_test PROPERTIES LABELS system TIMEOUT 600)
 add_test(NAME install_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/install_test.sh ${CMAKE_BINARY_DIR}
                                    $<IF:$<TARGET_EXISTS:airdos_jar>,JAR,NO_JAR>)
 set_tests_properties(install_test PROPERTIES LABELS system TIMEOUT 180 ENVIRONMENT CXX=${CMAKE_CXX_COMPILER})
+add_test(NAME packages_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/packages_test.sh ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR})
+set_tests_properties(packages_test PROPERTIES LABELS system TIMEOUT 600 SKIP_RETURN_CODE 77)
 add_test(NAME includes_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/includes_test.sh ${PROJECT_SOURCE_DIR})
 set_tests_properties(includes_test PROPERTIES LABELS unit TIMEOUT 60)
 add_test(NAME benchmarks_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/benchmarks_test.sh ${PROJECT_SOURCE_DIR})
@@ -18,3 +20,11 @@ add_test(NAME long_run_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/long_run_test.sh
 set_tests_properties(long_run_test PROPERTIES LABELS system TIMEOUT 600 SKIP_RETURN_CODE 77 COST 100)
 add_test(NAME mutation_lists_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/mutation_lists_test.sh ${PROJECT_SOURCE_DIR})
 set_tests_properties(mutation_lists_test PROPERTIES LABELS system TIMEOUT 180)
+# Clients as outside users build them, with our processes. The programs it compiles, and Java, are few but slow on a busy machine.
+add_test(NAME clients_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/clients_test.sh ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR}
+                                   $<IF:$<TARGET_EXISTS:airdos_jar>,JAR,NO_JAR>)
+set_tests_properties(clients_test PROPERTIES LABELS system TIMEOUT 600 SKIP_RETURN_CODE 77 ENVIRONMENT CXX=${CMAKE_CXX_COMPILER})
+add_test(NAME lint_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/lint_test.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(lint_test PROPERTIES LABELS system TIMEOUT 600 SKIP_RETURN_CODE 77)
+add_test(NAME docs_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/docs_test.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(docs_test PROPERTIES LABELS system TIMEOUT 600 SKIP_RETURN_CODE 77)

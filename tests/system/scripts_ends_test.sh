@@ -93,6 +93,10 @@ make_root() {
   sed -i '/^AIRDOS_PACKAGES=($/,/^)$/c AIRDOS_PACKAGES=(xauth jq)' "$root/launch_scripts/setup.sh"
   echo 'project(airdos VERSION 1.2.3' > "$root/CMakeLists.txt"
   echo log > "$root/logs/road_crossing06.lcm"
+  make_program "$root/launch_scripts/lint.sh" << 'FAKE'
+fails lint && echo "a.cc:1: error: nonsense" && exit 1
+echo "lint.sh: nothing to report"
+FAKE
   make_builders
   make_demo_programs
   make_fuzzers
@@ -132,7 +136,7 @@ demo_replaces_nothing_in_a_folder_that_was_named() {
 demo_without_ground_truth_is_well() {
   fresh
   FAILS=truth run 0 "$demo" --run-dir "$work/no_truth"
-  says out 'the log holds no ground truth'
+  says out 'the log has no ground truth'
   ran 0 airdos-evaluate
   says out "$work/no_truth/map.png"
 }
@@ -167,6 +171,70 @@ demo_installs_what_is_missing() {
   says out 'demo.sh: installing xauth jq '
   ran 1 '^apt-get .* update$'
   ran 1 '^apt-get .* install --no-install-recommends xauth jq$'
+}
+
+# --- how far it is
+
+# With a clock of its own: 4 s for each line.
+progress_of() {
+  bash -c 'source "$1"; clock=0; read_clock() { now=$clock; clock=$((clock + 4)); }; "$2" "$3"' \
+    progress "$root/launch_scripts/setup.sh" "$1" "$work/progress.log"
+}
+
+a_build_says_how_long_it_takes_yet() {
+  {
+    echo 'ninja: Entering directory'
+    for ((i = 1; i <= 100; ++i)); do echo "[$i/100] Building $i.cc"; done
+  } > "$work/lines"
+  progress_of show_progress < "$work/lines" > "$work/out"
+  diff "$work/out" - << 'LINES' || fail "other lines"
+  compiled 1 of 100
+  compiled 10 of 100, about 6 min left
+  compiled 20 of 100, about 5 min left
+  compiled 30 of 100, about 5 min left
+  compiled 40 of 100, about 4 min left
+  compiled 50 of 100, about 3 min left
+  compiled 60 of 100, about 3 min left
+  compiled 70 of 100, about 2 min left
+  compiled 80 of 100, about 1 min left
+  compiled 90 of 100, less than a minute left
+  compiled 100 of 100
+LINES
+  diff "$work/lines" "$work/progress.log" || fail "the log is not what ninja said"
+  printf '%s\n' '[1/1] Nothing' > "$work/lines"
+  progress_of show_progress < "$work/lines" > "$work/out"
+  ends_with out '  compiled 1 of 1'
+  progress_of show_progress < /dev/null > "$work/out"
+  ! [[ -s $work/out ]] || fail "of nothing it says: $(cat "$work/out")"
+}
+
+packages_say_how_long_they_take_yet() {
+  {
+    echo 'Reading package lists...'
+    for ((i = 0; i <= 100; i += 25)); do echo "dlstatus:$i:$i.0000:Retrieving file $i of 100"; done
+    for ((i = 0; i <= 100; i += 10)); do echo "pmstatus:libfoo:$i.5:Installing libfoo"; done
+    echo 'Setting up libfoo'
+  } > "$work/lines"
+  progress_of show_apt_progress < "$work/lines" > "$work/out"
+  diff "$work/out" - << 'LINES' || fail "other lines"
+  downloaded 0 % of the packages
+  downloaded 25 % of the packages
+  downloaded 50 % of the packages, less than a minute left
+  downloaded 75 % of the packages, less than a minute left
+  downloaded 100 % of the packages
+  installed 0 % of the packages
+  installed 10 % of the packages
+  installed 20 % of the packages, less than a minute left
+  installed 30 % of the packages, less than a minute left
+  installed 40 % of the packages, less than a minute left
+  installed 50 % of the packages, less than a minute left
+  installed 60 % of the packages, less than a minute left
+  installed 70 % of the packages, less than a minute left
+  installed 80 % of the packages, less than a minute left
+  installed 90 % of the packages, less than a minute left
+  installed 100 % of the packages
+LINES
+  printf '%s\n' 'Reading package lists...' 'Setting up libfoo' | diff - "$work/progress.log" || fail "the log holds apt's figures"
 }
 
 # --- fuzz.sh
@@ -312,6 +380,16 @@ test_runs_the_normal_build_although_the_sanitized_fails() {
   ends_with out "$failed_before"
 }
 
+test_runs_the_tests_although_lint_fails() {
+  all_is_well
+  FAILS=lint run 1 "$test"
+  says out 'a.cc:1: error: nonsense'
+  says out "$well_sanitized"
+  says out "$well"
+  says_not out "$failed_before"
+  ends_with out 'test.sh: FAILED: lint.sh (see above)'
+}
+
 test_fails_where_a_fuzz_target_does() {
   all_is_well
   FAILS=second run 1 "$test"
@@ -383,7 +461,7 @@ test_without_a_result_is_no_success() {
 test_ends_where_a_build_fails() {
   local folder script
   for folder in build build-fuzz build-sanitize; do
-    script=test
+    script="test"
     if [[ $folder == build-fuzz ]]; then script=fuzz; fi
     all_is_well
     FAILS="build:$folder $([[ $folder == build-sanitize ]] && echo libfuzzer)" run 1 "$test"
@@ -399,12 +477,17 @@ test_leaves_out_what_it_is_told_to() {
   says out "$well_sanitized"
   ran 0 'airdos_fuzz|build-fuzz|dpkg-query .* clang$'
   all_is_well
+  run 0 "$test" --no-lint
+  ran 0 'lint.sh|dpkg-query .* shellcheck$'
+  says out "$well"
+  all_is_well
   run 0 "$test" --no-sanitizers
+  ran 1 'lint.sh'
   ran 0 'airdos_fuzz|build-fuzz|build-sanitize'
   ends_with out "$well"
 }
 
-link_tools awk basename cat chmod cp ctest cut diff dirname du env grep ln mkdir mkfifo nproc rm rmdir sed sh sleep tail tee touch uname wc
+link_tools awk basename bash cat chmod cp ctest cut diff dirname du env grep ln mkdir mkfifo nproc rm rmdir sed sh sleep tail tee touch uname wc
 make_root
 ln -s "$work/clang++" "$work/bin/clang++"
 export PATH=$work/bin:$work/tools
@@ -413,6 +496,8 @@ demo_replaces_nothing_in_a_folder_that_was_named
 demo_without_ground_truth_is_well
 demo_ends_with_the_step_that_fails
 demo_installs_what_is_missing
+a_build_says_how_long_it_takes_yet
+packages_say_how_long_they_take_yet
 fuzz_says_how_far_each_target_came
 fuzz_names_the_input_that_fails_and_runs_the_others
 fuzz_runs_so_many_at_a_time
@@ -421,6 +506,7 @@ fuzz_that_is_ended_leaves_nobody
 fuzz_without_a_build_ends_at_once
 test_runs_all_and_says_so
 test_runs_the_normal_build_although_the_sanitized_fails
+test_runs_the_tests_although_lint_fails
 test_fails_where_a_fuzz_target_does
 test_fails_where_the_normal_build_does
 test_says_that_there_is_no_clang

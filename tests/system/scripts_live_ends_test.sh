@@ -109,9 +109,9 @@ replay_into_a_run_that_has_ended_is_refused() {
   gone=$!
   wait "$gone"
   make_run "$gone"
-  expect 1 "process $gone does not run (any more)" replay_log
+  expect 1 "process $gone is not running" replay_log
   make_run nonsense
-  expect 2 "not a process number: 'nonsense'" replay_log
+  expect 2 "not a process id: 'nonsense'" replay_log
   ran 0 lcm-logplayer
   played 0
 }
@@ -166,7 +166,7 @@ replay_goes_on_when_a_process_dies() {
   await "the player" test -s "$work/network_of_player"
   [[ $(cat "$work/network_of_player") == "$(readlink "/proc/$live_pid/ns/net")" ]] || fail "played into another network"
   kill -KILL "$(sed -n 's/^optimizer=//p' "$work/run/state")"
-  await "the report" grep -q "optimizer ended with exit code 137; the others go on" "$work/live.out"
+  await "the report" grep -q "optimizer ended with exit code 137; the others continue" "$work/live.out"
   echo > "$work/player.fifo"
   wait "$pid" || got=$?
   ((got == 0)) || fail "replay_log.sh: exit code $got: $(cat "$work/replay.out")"
@@ -174,7 +174,7 @@ replay_goes_on_when_a_process_dies() {
   end_live 1
   all_ended 0 optimizer
   run 1 replay_log
-  says err "process $live_pid does not run (any more)"
+  says err "process $live_pid is not running"
 }
 
 live_ends_when_all_have_ended() {
@@ -187,7 +187,7 @@ live_ends_when_all_have_ended() {
   tell airdos-frontend 5
   await "how to start it again" grep -qF "nsenter -t $live_pid -n -- $work/bin/airdos-frontend --lcm-url '$url' --pace lockstep" \
     "$work/live.out"
-  live_says out "frontend ended with exit code 5; the others go on. To start it again:"
+  live_says out "frontend ended with exit code 5; the others continue. To restart it:"
   for process in human-tracker optimizer map-recorder; do tell "airdos-$process" 0; done
   end_live 1
   live_says out "run_live.sh: frontend: exit code 5"
@@ -234,8 +234,8 @@ live_waits_for_what_was_sent() {
 }
 
 live_says_what_its_processes_say() {
-  make_optimizer 'echo "airdos-optimizer: READY now"; echo "airdos-optimizer: warning: it is dark"
-    trap "echo airdos-optimizer: poses: 7 from images; exit 1" TERM'
+  make_optimizer 'echo "airdos-optimizer: READY now"; echo "2026-03-01T12:34:56.789Z airdos-optimizer: warning: it is dark"
+    trap "echo 2026-03-01T12:34:56.789Z airdos-optimizer: info: poses: 7 from images; exit 1" TERM'
   ready
   await "the warning" grep -q "airdos-optimizer: warning: it is dark" "$work/live.err"
   kill -TERM "$live_pid"
@@ -302,14 +302,14 @@ live_refuses_before_it_starts_anybody() {
   FAILS=check start_live --log "$log"
   end_live 2
   live_says err 'log: error: no calibration'
-  live_says err "'$log' cannot be used (see above; --no-check plays it all the same)"
+  live_says err "'$log' cannot be used (see above; --no-check plays it anyway)"
   FAILS=unreadable start_live --log "$log"
   end_live 2
   live_says err 'airdos-check: no such thing'
   ! [[ -e $work/run/state ]] || fail "a run was begun"
   mkdir -p "$work/other"
   echo mine > "$work/other/frontend.log"
-  expect 2 "$work/other/frontend.log is not of a run; --force replaces it" env AIRDOS_BIN="$work/bin" "$live" --run-dir "$work/other"
+  expect 2 "$work/other/frontend.log was not written by a run; --force replaces it" env AIRDOS_BIN="$work/bin" "$live" --run-dir "$work/other"
   ready
   expect 2 "another run_live.sh is writing to $work/run" env AIRDOS_BIN="$work/bin" "$live" --run-dir "$work/run"
   kill -TERM "$live_pid"

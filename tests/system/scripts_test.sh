@@ -20,7 +20,7 @@ each_script_says_its_version() {
 
 wrong_options_exit_2_in_one_line() {
   local script
-  for script in setup demo test fuzz spy run_live replay_log long_run; do
+  for script in setup demo test lint docs fuzz spy run_live replay_log long_run package keep_map network_setup; do
     expect 0 "Usage: launch_scripts/$script.sh" "$scripts/$script.sh" --help
     expect 2 "--no-such-option" "$scripts/$script.sh" --no-such-option
   done
@@ -31,14 +31,16 @@ wrong_options_exit_2_in_one_line() {
   expect 2 "--speed: not a number: 'x'" "$scripts/run_live.sh" --speed x
   expect 2 "exclude each other" "$scripts/run_live.sh" --data / --log "$0"
   expect 2 "--minutes: not a whole number above 0: '0'" "$scripts/long_run.sh" --minutes 0
-  expect 2 "--max-lost: not a whole number of 0 to 100: '101'" "$scripts/long_run.sh" --max-lost 101
+  expect 2 "--max-lost: not a whole number from 0 to 100: '101'" "$scripts/long_run.sh" --max-lost 101
   expect 2 "no folder or log '/nonexistent'" "$scripts/long_run.sh" /nonexistent
   expect 2 "no file '/nonexistent.lcm'" "$scripts/replay_log.sh" /nonexistent.lcm
   expect 2 "no run of run_live.sh in '/nonexistent'" "$scripts/replay_log.sh" "$0" --run /nonexistent
   expect 2 "no run of run_live.sh in '/nonexistent'" "$scripts/spy.sh" --namespace /nonexistent
   expect 2 "--seconds: not a whole number above 0: '0'" "$scripts/fuzz.sh" --seconds 0
   expect 2 "--jobs: not a whole number above 0: '0'" "$scripts/fuzz.sh" --jobs 0
-  expect 1 "airdos-frontend is missing: build first" env AIRDOS_BIN="$work/none" "$scripts/run_live.sh"
+  expect 2 "which folder? One, not 2" "$scripts/keep_map.sh" /a /b
+  expect 2 "--out needs a value" "$scripts/package.sh" --out
+  expect 1 "airdos-frontend is missing: build it" env AIRDOS_BIN="$work/none" "$scripts/run_live.sh"
 }
 
 processes_start_and_end_together() {
@@ -87,7 +89,7 @@ others_go_on_when_one_is_killed() {
   start_live
   await "READY" grep -qs "READY: frontend" "$work/live.out"
   kill -KILL "$(sed -n 's/^optimizer=//p' "$work/run/state")"
-  await "the report" grep -q "optimizer ended with exit code 137; the others go on" "$work/live.out"
+  await "the report" grep -q "optimizer ended with exit code 137; the others continue" "$work/live.out"
   [[ -n $(pids_of airdos-frontend) ]] || fail "the frontend does not go on"
   kill -TERM "$live_pid"
   end_live 1

@@ -160,7 +160,7 @@ TEST_F(TransportTest, AFloodDoesNotKeepAProcessFromItsWork) {
   LcmRunnerOptions options;
   options.process = "flooded";
   options.pace = LcmRunnerOptions::Pace::kRealtime;
-  std::ostringstream log;
+  const ProcessLog log(options.process, LogLevel::kError);
   LcmRunner runner(&node, &transport, options, &log);
   runner.Start();
   runner.Run();

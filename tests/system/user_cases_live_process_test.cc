@@ -127,7 +127,7 @@ TEST_F(UserCases, CaseALogIsPlayedTwice) {
   DriveAll(SampleEvents(0, 5));
   for (const LogEvent& event : SampleEvents(0, 5)) Say(event);
   for (const std::string program : {"airdos-frontend", "airdos-human-tracker"}) {
-    ExpectWarning(program, "session 1 was already worked on up to image 5: what comes again of it");
+    ExpectWarning(program, "session 1 was already processed up to image 5: repeated messages");
   }
   StopAndHear();
   EXPECT_EQ(listener_->num_messages(channel::kStateEstimate), 6);
@@ -200,8 +200,11 @@ TEST_F(UserCases, CaseNoCalibrationIsSaid) {
     if (event.channel != channel::kCalibration) Say(event);
   }
   for (const std::string program : {"airdos-frontend", "airdos-human-tracker"}) {
-    ExpectWarning(program, "no CALIBRATION yet for session 1: no pose will come until it does");
+    ExpectWarning(program, "no CALIBRATION yet for session 1: there are no poses until it arrives");
   }
+  StopAndHear();
+  EXPECT_EQ(listener_->num_messages(channel::kStateEstimate), 0);
+  EXPECT_EQ(listener_->num_messages(channel::kFrameDone), 0) << "the optimizer never hears of them";
 }
 
 TEST_F(UserCases, CaseHangUpEndsAProcessAsTermDoes) {

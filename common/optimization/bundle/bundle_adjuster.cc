@@ -10,7 +10,7 @@
 namespace airdos {
 namespace {
 
-/// Solves the graph as it is now, and again after factors were removed from it.
+/// Solves the graph as it is, and again after factors have been removed from it.
 class Minimizer {
  public:
   Minimizer(const BundleOptions& bundle, FactorGraph* graph, std::vector<double>* memory) {
@@ -47,15 +47,15 @@ BundleSummary SolveBundle(const BundleOptions& options, BundleProblem* problem,
                           std::vector<double>* memory) {
   for (BundleProblem::Human& human : problem->humans) {
     human.motions.clear();
-    human.num_rigidity_eliminated = 0;
-    human.num_motion_eliminated = 0;
+    human.num_rigidity_rejected = 0;
+    human.num_motion_rejected = 0;
   }
   BundleGraph graph(options, problem);
   Minimizer minimizer(options, graph.factor_graph(), memory);
   const MinimizerSummary first = minimizer.Minimize(options.max_iterations);
   MinimizerSummary last = first;
-  if (options.max_iterations_after_elimination > 0 && graph.Eliminate() > 0) {
-    last = minimizer.Minimize(options.max_iterations_after_elimination);
+  if (options.max_iterations_after_rejection > 0 && graph.RejectOutliers() > 0) {
+    last = minimizer.Minimize(options.max_iterations_after_rejection);
     last.num_iterations += first.num_iterations;
   }
   graph.WriteBack();

@@ -8,12 +8,12 @@
 
 namespace airdos {
 
-/// Bundle adjustment over camera poses, static landmarks and, if `use_people`, their joints,
-/// segment lengths and motions (paper, eq. 6): Levenberg-Marquardt, then elimination of factors
-/// with large errors, then Levenberg-Marquardt again. Overwrites the start values in `problem` with
-/// the result and marks eliminated factors. Frames that are fixed do not change. A problem without
-/// any free unknown comes back as it is. Deterministic: one thread, order of the vectors. `memory`
-/// (or null) carries no values from solve to solve, only its capacity.
+/// Bundle adjustment over camera poses, static landmarks and, if `use_people`, people's joints,
+/// segment lengths and motions (paper, eq. 6): Levenberg-Marquardt, then rejection of factors with
+/// large errors, then Levenberg-Marquardt again. Overwrites the initial values in `problem` with
+/// the result and marks the rejected factors. Fixed frames do not change. A problem without free
+/// unknowns is returned as it is. Deterministic: one thread, and factors in the order of the
+/// vectors. `memory` (may be null) carries only its capacity from solve to solve, no values.
 BundleSummary SolveBundle(const BundleOptions& options, BundleProblem* problem,
                           std::vector<double>* memory = nullptr);
 

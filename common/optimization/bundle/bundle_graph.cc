@@ -10,10 +10,10 @@ namespace airdos {
 BundleGraph::BundleGraph(const BundleOptions& options, BundleProblem* problem)
     : options_(options),
       problem_(problem),
-      static_loss_(options.huber_static),
-      dynamic_loss_(options.huber_dynamic),
-      smoothness_loss_(options.huber_smoothness > 0
-                           ? std::make_unique<ceres::HuberLoss>(options.huber_smoothness)
+      static_loss_(options.huber_static_sigmas),
+      dynamic_loss_(options.huber_dynamic_sigmas),
+      smoothness_loss_(options.huber_smoothness_sigmas > 0
+                           ? std::make_unique<ceres::HuberLoss>(options.huber_smoothness_sigmas)
                            : nullptr) {
   AddPoses();
   AddLandmarks();
@@ -52,7 +52,7 @@ void BundleGraph::AddLandmarks() {
       is_seen_by_free_frame[landmark] = true;
     }
   }
-  // The others cannot influence a pose: out of the linear system with them.
+  // Fixed landmarks cannot influence a pose, so they are kept out of the linear system.
   for (std::size_t i = 0; i < landmark_blocks_.size(); ++i) {
     const bool is_constant = problem_->landmarks[i].is_fixed || !is_seen_by_free_frame[i];
     if (is_constant) graph_.SetConstant(landmark_blocks_[i]);
@@ -67,7 +67,7 @@ void BundleGraph::AddAccelerations() {
     };
     const double step_1_s = time_s(b) - time_s(a);
     const double step_2_s = time_s(c) - time_s(b);
-    if (!(step_1_s > 0 && step_2_s > 0)) continue;  // a clock that stood still says nothing
+    if (!(step_1_s > 0 && step_2_s > 0)) continue;  // no information if the clock stood still
     const auto block = [this](int frame) { return pose_blocks_[static_cast<std::size_t>(frame)]; };
     graph_.AddFactor(
         std::make_unique<CameraAccelerationFactor>(step_1_s, step_2_s, acceleration.sigma), nullptr,
@@ -78,31 +78,31 @@ void BundleGraph::AddAccelerations() {
 double BundleGraph::Threshold(Kind kind) const {
   switch (kind) {
     case Kind::kLandmark:
-      return options_.eliminate_static;
+      return options_.reject_static_sigmas;
     case Kind::kJoint:
-      return options_.eliminate_joint;
+      return options_.reject_joint_sigmas;
     case Kind::kRigidity:
-      return options_.eliminate_rigidity;
+      return options_.reject_rigidity_sigmas;
     case Kind::kMotion:
-      return options_.eliminate_motion;
+      return options_.reject_motion_sigmas;
   }
   AIRDOS_CHECK(false);
 }
 
-void BundleGraph::CountEliminated(const Factor& factor) {
-  if (factor.is_eliminated != nullptr) *factor.is_eliminated = true;
-  if (factor.num_eliminated != nullptr) ++*factor.num_eliminated;
+void BundleGraph::CountRejected(const Factor& factor) {
+  if (factor.is_rejected != nullptr) *factor.is_rejected = true;
+  if (factor.num_rejected != nullptr) ++*factor.num_rejected;
   if (factor.kind == Kind::kRigidity) {
-    ++summary_.num_rigidity_eliminated;
+    ++summary_.num_rigidity_rejected;
   } else if (factor.kind == Kind::kMotion) {
-    ++summary_.num_motion_eliminated;
+    ++summary_.num_motion_rejected;
   } else {
-    ++summary_.num_reprojection_eliminated;
+    ++summary_.num_reprojection_rejected;
   }
 }
 
-int BundleGraph::Eliminate() {
-  int num_eliminated = 0;
+int BundleGraph::RejectOutliers() {
+  int num_rejected = 0;
   std::vector<Factor> kept;
   kept.reserve(factors_.size());
   for (const Factor& factor : factors_) {
@@ -110,12 +110,12 @@ int BundleGraph::Eliminate() {
       kept.push_back(factor);
       continue;
     }
-    CountEliminated(factor);
+    CountRejected(factor);
     graph_.RemoveFactor(factor.index);
-    ++num_eliminated;
+    ++num_rejected;
   }
   factors_ = std::move(kept);
-  return num_eliminated;
+  return num_rejected;
 }
 
 int BundleGraph::newest_pose() const {

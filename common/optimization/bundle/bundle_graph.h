@@ -21,46 +21,49 @@
 namespace airdos {
 
 /// A BundleProblem as a graph of factors for a minimizer. Points and lengths are optimized in
-/// place, poses and motions in blocks of this; WriteBack() copies these. Internal to SolveBundle().
+/// place; poses and motions are optimized in copies, which WriteBack() returns to the problem.
+/// Internal to SolveBundle().
 class BundleGraph {
  public:
-  /// Neither is owned; both must outlive the graph.
+  /// Neither argument is owned; both must outlive the graph.
   BundleGraph(const BundleOptions& options, BundleProblem* problem);
 
   FactorGraph* factor_graph() { return &graph_; }
 
-  /// Drops the factors whose error at the current values is above its threshold and marks them in
-  /// the problem. Returns how many.
-  int Eliminate();
-  /// The block of the newest frame's pose; -1 where it is fixed or there is none.
+  /// Removes the factors whose error at the current values exceeds their threshold, and marks them
+  /// in the problem. Returns the number of factors removed.
+  int RejectOutliers();
+  /// Block of the newest frame's pose; -1 if that is fixed or there is none.
   int newest_pose() const;
-  /// Poses and motions into the problem.
+  /// Copies poses and motions back to the problem.
   void WriteBack();
-  /// The counts of factors and of eliminated factors; the rest is left as it is.
+  /// The counts of factors and of rejected factors; all else keeps its defaults.
   const BundleSummary& summary() const { return summary_; }
 
  private:
+  /// What a factor measures; decides its threshold.
   enum class Kind { kLandmark, kJoint, kRigidity, kMotion };
+  /// A factor that may be rejected, and where that is recorded.
   struct Factor {
     int index;  ///< in the graph
     Kind kind;
-    bool* is_eliminated;  ///< or null
-    int* num_eliminated;  ///< or null
+    bool* is_rejected;  ///< may be null
+    int* num_rejected;  ///< may be null
   };
   using JointState = BundleProblem::JointState;
   /// A joint and its block of unknowns.
   struct Point {
-    JointState* state = nullptr;  ///< null where it was not seen
+    JointState* state = nullptr;  ///< null if it was not seen
     int block = -1;
   };
-  /// What one person shows in one frame.
+  /// What one frame shows of one person.
   struct Sighting {
     int frame = 0;
-    std::vector<Point> joints;  ///< one per point of the model
+    std::vector<Point> joints;  ///< indexed by the model's points
   };
-  /// A joint in two frames.
+  /// The same joint in two frames.
   using Pair = std::pair<Point, Point>;
-  /// A motion to be written back: of a rigid part (se3 not null) or of the torso at a velocity.
+  /// A motion to write back: of a rigid part (se3 not null), or the torso's velocity.
   struct Motion {
     BundleProblem::Human* human;
     int frame;
@@ -78,7 +81,7 @@ class BundleGraph {
   std::vector<Sighting> AddJoints(BundleProblem::Human* human);
   void AddRigidity(const std::vector<Sighting>& sightings, BundleProblem::Human* human);
   void AddVelocities(const std::vector<Sighting>& sightings, BundleProblem::Human* human);
-  /// An unknown of the track that is being added; `slice` as in FactorGraph.
+  /// Adds an unknown to the current track; `slice` as in FactorGraph.
   int AddTrackBlock(double* values, int size, int slice);
   static std::vector<Pair> SharedJoints(const std::vector<int>& wanted, const Sighting& before,
                                         const Sighting& after);
@@ -86,7 +89,7 @@ class BundleGraph {
   static Eigen::Vector3d MeanStep(const std::vector<Pair>& pairs);
   static BundleProblem::PartMotion StartMotion(const BundleProblem::Human& human, int part,
                                                const std::vector<Pair>& pairs);
-  /// The block of each part's motion from one frame to the next, -1 where there is none.
+  /// Block of each part's motion from one frame to the next; -1 if there is none.
   using PartBlocks = std::vector<int>;
   PartBlocks AddPartMotions(const Sighting& before, const Sighting& after,
                             BundleProblem::Human* human);
@@ -102,18 +105,18 @@ class BundleGraph {
   template <class Observation>
   void AddReprojection(Observation* observation, bool has_right, int point, Kind kind);
   double Threshold(Kind kind) const;
-  void CountEliminated(const Factor& factor);
+  void CountRejected(const Factor& factor);
 
   const BundleOptions& options_;
   BundleProblem* problem_;
   BundleSummary summary_;
 
-  // The graph refers to what stands above it.
+  // The graph refers to the members above it.
   ceres::HuberLoss static_loss_;
   ceres::HuberLoss dynamic_loss_;
-  std::unique_ptr<ceres::LossFunction> smoothness_loss_;  // or null
+  std::unique_ptr<ceres::LossFunction> smoothness_loss_;  // may be null
   std::vector<PoseBlock> poses_;
-  std::deque<PoseBlock> motions_;  // addresses stay
+  std::deque<PoseBlock> motions_;  // a deque, so that addresses stay valid
   std::deque<Eigen::Vector3d> velocities_;
   FactorGraph graph_;
 
@@ -126,7 +129,7 @@ class BundleGraph {
 
 template <class Observation>
 void BundleGraph::AddReprojection(Observation* observation, bool has_right, int point, Kind kind) {
-  if (observation->is_eliminated) return;
+  if (observation->is_rejected) return;
   const StereoCamera* camera = &problem_->camera;
   std::unique_ptr<ceres::CostFunction> cost;
   if (observation->point) {
@@ -146,7 +149,7 @@ void BundleGraph::AddReprojection(Observation* observation, bool has_right, int 
   const ceres::LossFunction* loss = kind == Kind::kLandmark ? &static_loss_ : &dynamic_loss_;
   const int pose = pose_blocks_[static_cast<std::size_t>(observation->frame)];
   const int index = graph_.AddFactor(std::move(cost), loss, pose, point);
-  factors_.push_back({index, kind, &observation->is_eliminated, nullptr});
+  factors_.push_back({index, kind, &observation->is_rejected, nullptr});
 }
 
 }  // namespace airdos

@@ -9,12 +9,13 @@
 namespace airdos {
 namespace {
 
-/// Steps whose durations differ by less, relatively, are the same to a shared motion.
+/// A shared motion takes two steps to be equally long if their durations differ by less than this,
+/// relatively.
 constexpr double kSameStep = 0.01;
 
 }  // namespace
 
-/// The joints of `wanted` that were seen before and after.
+/// The joints among `wanted` that were seen both before and after.
 std::vector<BundleGraph::Pair> BundleGraph::SharedJoints(const std::vector<int>& wanted,
                                                          const Sighting& before,
                                                          const Sighting& after) {
@@ -40,8 +41,9 @@ Eigen::Vector3d BundleGraph::MeanStep(const std::vector<Pair>& pairs) {
   return sum / static_cast<double>(pairs.size());
 }
 
-/// The rigid motion that takes the first points of the pairs to the second (least squares). Two
-/// points leave the turn about their line free, so their motion starts without a turn.
+/// The rigid motion that maps the first points of the pairs to the second (least squares). Two
+/// points leave the rotation about the line through them free, so their motion starts without a
+/// rotation.
 BundleProblem::PartMotion BundleGraph::StartMotion(const BundleProblem::Human& human, int part,
                                                    const std::vector<Pair>& pairs) {
   for (const BundleProblem::PartMotion& start : human.start_motions) {
@@ -112,8 +114,8 @@ std::vector<BundleGraph::Sighting> BundleGraph::AddJoints(BundleProblem::Human* 
   return sightings;
 }
 
-/// Time in s from one sighting to the next; zero where a motion factor between them would say
-/// nothing.
+/// Time in s between two consecutive sightings; zero if a motion factor between them would carry no
+/// information.
 double BundleGraph::StepBetween(const Sighting& before, const Sighting& after,
                                 const BundleProblem::Human& human) const {
   if (human.track_breaks.count(after.frame) > 0) return 0;
@@ -136,7 +138,7 @@ void BundleGraph::AddRigidity(const std::vector<Sighting>& sightings, BundleProb
       const int index =
           graph_.AddFactor(std::make_unique<RigidityFactor>(options_.rigidity_sigma_m),
                            &dynamic_loss_, a.block, b.block, length);
-      factors_.push_back({index, Kind::kRigidity, nullptr, &human->num_rigidity_eliminated});
+      factors_.push_back({index, Kind::kRigidity, nullptr, &human->num_rigidity_rejected});
       ++num_factors;
     }
     summary_.num_rigidity += num_factors;
@@ -154,7 +156,7 @@ void BundleGraph::AddMotionFactor(std::unique_ptr<ceres::CostFunction> cost, con
                                   int motion, BundleProblem::Human* human) {
   const int index = graph_.AddFactor(std::move(cost), &dynamic_loss_, pair.first.block,
                                      pair.second.block, motion);
-  factors_.push_back({index, Kind::kMotion, nullptr, &human->num_motion_eliminated});
+  factors_.push_back({index, Kind::kMotion, nullptr, &human->num_motion_rejected});
   ++summary_.num_motion;
 }
 
@@ -163,7 +165,7 @@ void BundleGraph::AddVelocities(const std::vector<Sighting>& sightings,
   const MotionNoise noise = NoiseOf(*human);
   const bool is_whole_track =
       human->motion_form.value_or(options_.motion_form) == MotionForm::kVelocityTrack;
-  int velocity_before = -1;  // the block of the pair just before this one
+  int velocity_before = -1;  // block of the previous pair of frames
   double step_before_s = 0;
   for (std::size_t i = 1; i < sightings.size(); ++i) {
     const double step_s = StepBetween(sightings[i - 1], sightings[i], *human);
@@ -228,7 +230,7 @@ BundleGraph::PartBlocks BundleGraph::AddPartMotions(const Sighting& before, cons
   for (int part = 0; part < static_cast<int>(human->model->parts.size()); ++part) {
     const std::vector<Pair> pairs =
         SharedJoints(human->model->parts[static_cast<std::size_t>(part)], before, after);
-    if (pairs.size() < 2) continue;  // one point has no rotation
+    if (pairs.size() < 2) continue;  // a single point does not determine a rotation
     const Eigen::Vector3d centroid_W = Centroid(pairs);
     motions_.push_back(ToPoseBlock({Eigen::Quaterniond::Identity(), MeanStep(pairs)}));
     const int motion = AddTrackBlock(motions_.back().data(), kPoseBlockSize, after.frame);
@@ -245,9 +247,9 @@ BundleGraph::PartBlocks BundleGraph::AddPartMotions(const Sighting& before, cons
   return blocks;
 }
 
-/// One motion per part for the whole track, about the centroid of the part where it was first seen
-/// twice in a row. It is the motion of the track's first step; later steps of another duration (a
-/// frame was missed) get no factor.
+/// One motion per part for the whole track, about the part's centroid where it was first seen in
+/// two consecutive frames. It is the motion over the track's first step; later steps of a different
+/// duration (after a missed frame) get no factor.
 void BundleGraph::AddTrackMotions(const std::vector<Sighting>& sightings,
                                   BundleProblem::Human* human) {
   const double sigma_m = NoiseOf(*human).motion_sigma_m;
@@ -262,7 +264,7 @@ void BundleGraph::AddTrackMotions(const std::vector<Sighting>& sightings,
       if (human->track_breaks.count(sightings[i].frame) > 0) motion = -1;
       if (step_s == 0 || pairs.empty()) continue;
       if (motion < 0) {
-        if (pairs.size() < 2) continue;  // one point has no rotation
+        if (pairs.size() < 2) continue;  // a single point does not determine a rotation
         BundleProblem::PartMotion start = StartMotion(*human, part, pairs);
         centroid_W = start.centroid_W;
         motions_.push_back(ToPoseBlock(start.motion_W));
@@ -289,8 +291,8 @@ MotionNoise BundleGraph::NoiseOf(const BundleProblem::Human& human) const {
       MotionNoise{options_.motion_sigma_m, options_.person_acceleration_m_s2, 1.0});
 }
 
-/// Two points leave the rotation about the line through them free; three or more may still lie
-/// nearly on a line, and elimination may take some away, so that these are damped ten times less.
+/// Two points leave the rotation about the line through them free. Three or more may lie nearly on
+/// a line, and rejection may remove some, so they are damped too, ten times less.
 void BundleGraph::AddRotationDamping(const std::vector<const JointState*>& points, int motion) {
   const double weight = 1 / options_.free_rotation_sigma_rad;
   Eigen::Matrix3d sqrt_information = 0.1 * weight * Eigen::Matrix3d::Identity();

@@ -17,38 +17,40 @@
 
 namespace airdos {
 
-/// How the motion of people and other moving objects enters (paper, eq. 4, 5).
+/// How the motion of people and other moving objects is modelled (paper, eq. 4 and 5).
 enum class MotionForm {
   kVelocity,       ///< torso and head share one velocity per frame pair, smoothed over time
   kVelocityTrack,  ///< torso and head share one velocity over the whole window
   kSe3Parts,       ///< the paper's: one rigid motion per rigid part and frame pair
-  kSe3Track,       ///< for rigid objects: one rigid motion per part over the whole track
+  kSe3Track,       ///< for rigid objects: one rigid motion per part for the whole track
   kSe3Smooth,      ///< for rigid objects: one per part and frame pair, smoothed over time
 };
 
-/// How far a track's points stray from its motion model: one standard deviation, per axis.
+/// How far a track's points deviate from its motion model: one standard deviation per axis.
 struct MotionNoise {
   double motion_sigma_m = 0.05;    ///< of a point against the body's motion, per frame pair
   double acceleration_m_s2 = 2.0;  ///< of the change of velocity (kVelocity, kSe3Smooth)
   double angular_acceleration_rad_s2 = 1.0;  ///< likewise (kSe3Smooth)
 };
 
-/// The unknowns and measurements of one bundle adjustment with people (paper, eq. 6). Indices point
-/// into the vectors of the same struct. The order of the vectors decides the order in which factors
-/// reach the solver, so whoever fills them sorts by id.
+/// The unknowns and measurements of one bundle adjustment with people (paper, eq. 6). Indices refer
+/// to the vectors of this struct. The order of the vectors determines the order of the factors in
+/// the solver, so whoever fills them sorts by id.
 struct BundleProblem {
+  /// A stereo frame and its camera pose.
   struct Frame {
     FrameId id;
     double time_s = 0;  ///< capture time
     Se3 T_W_C;          ///< start value, then result
     bool is_fixed = false;
   };
+  /// A static point.
   struct Landmark {
     LandmarkId id;
     Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< start value, then result
     bool is_fixed = false;
   };
-  /// A point measured in the camera's axes instead of in pixels.
+  /// A point measured in camera coordinates instead of pixels.
   struct PointMeasurement {
     Eigen::Vector3d p_C = Eigen::Vector3d::Zero();
     double sigma_m = 0.05;  ///< the same in each axis
@@ -60,11 +62,11 @@ struct BundleProblem {
     Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();  ///< u_left, v, u_right
     bool has_right = true;                             ///< if false, u_right is not a measurement
     double sigma_px = 1;
-    bool is_eliminated = false;  ///< if true at the start it stays out; result: error too large
-    /// If given, the pixels are not looked at.
+    bool is_rejected = false;  ///< if true initially, stays out; result: rejected
+    /// If set, the pixels are not used.
     std::optional<PointMeasurement> point = std::nullopt;
   };
-  /// Three consecutive frames, oldest first, whose camera moves smoothly.
+  /// Three consecutive frames, oldest first, over which the camera moves smoothly.
   struct CameraAcceleration {
     std::array<int, 3> frames = {};
     AccelerationSigma sigma;
@@ -76,39 +78,39 @@ struct BundleProblem {
     Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< start value, then result
     Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();
     Eigen::Matrix3d covariance_px2 = Eigen::Matrix3d::Identity();  ///< of uvu_px
-    bool is_eliminated = false;  ///< as above: its reprojection, not the joint
-    /// If given, the pixels are not looked at.
+    bool is_rejected = false;  ///< as above: its reprojection, not the joint
+    /// If set, the pixels are not used.
     std::optional<PointMeasurement> point = std::nullopt;
   };
-  /// How one rigid part (of the model: index into kParts) moved from the frame where the person was
-  /// seen before to `frame`: p_k = R (p_km1 - centroid_W) + centroid_W + t, R and t in W.
+  /// How one rigid part (index into the model's parts) moved between the person's previous sighting
+  /// and `frame`: p_k = R (p_km1 - centroid_W) + centroid_W + t, R and t in W.
   struct PartMotion {
     int frame = 0;
     int part = 0;
     Eigen::Vector3d centroid_W = Eigen::Vector3d::Zero();
     Se3 motion_W;
   };
-  /// A person, or any other moving object with a model of its own.
+  /// A person, or any other moving object with its own model.
   struct Human {
     using Lengths = std::vector<std::optional<double>>;  ///< one per segment of the model
     HumanId id;
     std::vector<JointState> joints;   ///< sorted by (frame, joint), at most one of each
     std::vector<PartMotion> motions;  ///< result, sorted by (frame, part)
-    /// Start value, then result; factors only where given.
+    /// Initial value, then result; only segments with a value get factors.
     Lengths segment_length_m = Lengths(kNumSegments);
-    /// Lengths known from the track before this window, if it is older, and how well.
+    /// Lengths known from before this window, if the track is older, and their standard deviations.
     Lengths known_length_m = Lengths(kNumSegments);
     std::vector<double> known_length_sigma_m = std::vector<double>(kNumSegments);
-    int num_rigidity_eliminated = 0;  ///< results
-    int num_motion_eliminated = 0;
+    int num_rigidity_rejected = 0;  ///< results
+    int num_motion_rejected = 0;
     std::shared_ptr<const ArticulatedModel> model = CocoBodyModel();
-    std::optional<MotionForm> motion_form;    ///< else as the options say
-    std::optional<MotionNoise> motion_noise;  ///< likewise
-    /// Frames at which the track became somebody else's: no motion leads there from the sighting
-    /// before, and the velocity may be another.
+    std::optional<MotionForm> motion_form;    ///< if not set, the one of the options
+    std::optional<MotionNoise> motion_noise;  ///< if not set, the one of the options
+    /// Frames at which the track switched to another person: no motion factor links them to the
+    /// previous sighting, and the velocity may change.
     std::set<int> track_breaks;
-    /// Start values of kSe3Track, at most one per part; `frame` is not looked at. Where none is
-    /// given the points give one.
+    /// Initial values for kSe3Track, at most one per part; `frame` is not used. If there is none,
+    /// it is computed from the points.
     std::vector<PartMotion> start_motions;
   };
 

@@ -3,7 +3,7 @@
 
 namespace airdos {
 
-/// How much a carrier may accelerate: one standard deviation, per axis.
+/// How hard the camera's carrier may accelerate: one standard deviation per axis.
 struct AccelerationSigma {
   double linear_m_s2 = 2.0;
   double angular_rad_s2 = 5.0;

@@ -16,7 +16,8 @@ namespace airdos {
 ///   r   = ((v_2 - v_1) / (h sigma_linear), (w_2 - w_1) / (h sigma_angular))
 // clang-format on
 ///
-/// h_i are the time steps in s, so that a lost frame or an uneven rate does not read as a jerk.
+/// h_i are the time steps in s, so a dropped frame or an uneven frame rate does not look like a
+/// jerk.
 /// Blocks: T_W_C of the three frames (7 each).
 class CameraAccelerationFactor final
     : public ceres::SizedCostFunction<6, kPoseBlockSize, kPoseBlockSize, kPoseBlockSize> {

@@ -9,7 +9,8 @@
 
 namespace airdos {
 
-/// A point measured in the camera's axes with the same error in each, as in the paper's simulation:
+/// A point measured in the camera frame with the same noise on each axis, as in the paper's
+/// simulation:
 ///
 ///   r = (R_W_C^T (p_W - t_W_C) - z_C) / sigma
 ///

@@ -10,13 +10,13 @@
 
 namespace airdos {
 
-/// Rigidity of a body segment (paper, eq. 3): the distance of its two joints is the length s of the
-/// segment, one for the whole track:
+/// Rigidity of a body segment (paper, eq. 3): the distance between its two joints equals the
+/// segment's length s, which is shared by the whole track:
 ///
 ///   r = (|p_a - p_b| - s) / sigma
 ///
-/// Blocks: p_a (3), p_b (3), s (1), all m. Where the joints coincide the direction is undefined and
-/// the derivatives of the distance are taken as zero.
+/// Blocks: p_a (3), p_b (3), s (1), all in m. Where the joints coincide, the direction is undefined
+/// and the derivatives of the distance are taken to be zero.
 class RigidityFactor final : public ceres::SizedCostFunction<1, 3, 3, 1> {
  public:
   explicit RigidityFactor(double sigma_m) : weight_(1 / sigma_m) {}
@@ -27,7 +27,7 @@ class RigidityFactor final : public ceres::SizedCostFunction<1, 3, 3, 1> {
   double weight_;
 };
 
-/// The length of a segment as the track knew it before: r = (s - s_known) / sigma.
+/// Prior on a segment's length from the track's earlier frames: r = (s - s_known) / sigma.
 /// Block: s (1), m.
 class LengthPriorFactor final : public ceres::SizedCostFunction<1, 1> {
  public:
@@ -40,8 +40,8 @@ class LengthPriorFactor final : public ceres::SizedCostFunction<1, 1> {
   double weight_;
 };
 
-/// Motion of a joint from one frame to the next as a translation that the joints of one person
-/// share (the default form of eq. 4, 5):
+/// Motion of a joint between consecutive frames as a translation shared by the joints of one person
+/// (the default form of eq. 4 and 5):
 ///
 ///   r = (p_k - p_km1 - v dt) / sigma
 ///
@@ -57,7 +57,7 @@ class VelocityFactor final : public ceres::SizedCostFunction<3, 3, 3, 3> {
   double weight_;
 };
 
-/// A person's velocity changes little between consecutive frame pairs:
+/// A person's velocity changes little from one frame pair to the next:
 ///
 ///   r = (v_kp1 - v_k) / sigma
 ///
@@ -72,8 +72,8 @@ class VelocitySmoothnessFactor final : public ceres::SizedCostFunction<3, 3, 3> 
   double weight_;
 };
 
-/// The rigid motion of a part changes little between consecutive frame pairs of h_1 and h_2
-/// seconds:
+/// The rigid motion of a part changes little from one frame pair to the next; the pairs span h_1
+/// and h_2 seconds:
 ///
 ///   r = ((t_2 / h_2 - t_1 / h_1) / sigma_v, (Log R_2 / h_2 - Log R_1 / h_1) / sigma_w)
 ///
@@ -94,7 +94,7 @@ class PartSmoothnessFactor final
   double weight_angular_;
 };
 
-/// How fast people are, for the first velocity of a track: without it a camera that sees nothing
+/// Prior on a track's first velocity: how fast people are. Without it, a camera that sees nothing
 /// but people could move along with all of them at any speed.
 ///
 ///   r = v / sigma
@@ -110,8 +110,9 @@ class VelocityPriorFactor final : public ceres::SizedCostFunction<3, 3> {
   double weight_;
 };
 
-/// Motion of a joint as one rigid motion (R, t) per rigid part and frame pair (paper, eq. 4, 5),
-/// about the part's centroid c so that R and t do not trade against each other far from the origin:
+/// Motion of a joint as one rigid motion (R, t) per rigid part and frame pair (paper, eq. 4 and 5),
+/// about the part's centroid c so that R and t do not trade off against each other far from the
+/// origin:
 ///
 ///   r = (p_k - R (p_km1 - c) - c - t) / sigma
 ///
@@ -128,8 +129,8 @@ class PartMotionFactor final : public ceres::SizedCostFunction<3, 3, 3, kPoseBlo
   double weight_;
 };
 
-/// Damps the rotation of a part's motion where its points leave it free: two points say nothing
-/// about the rotation around the line through them.
+/// Damps the rotation of a part's motion where its points do not constrain it: two points leave the
+/// rotation about the line through them free.
 ///
 ///   r = A Log(R)
 ///

@@ -11,15 +11,16 @@
 
 namespace airdos {
 
-/// Reprojection of a point, static landmark (paper, eq. 1) or joint (eq. 2), into a stereo frame:
+/// Reprojection of a point, a static landmark (paper, eq. 1) or a joint (eq. 2), into a stereo
+/// frame:
 ///
 ///   p_C = R_W_C^T (p_W - t_W_C)
 ///   r   = U (project(p_C) - (u_left, v, u_right)),   U^T U = covariance^-1
 ///
-/// in standard deviations; kRows = 3, or 2 where there is no measurement in the right image. With
-/// the tangent (d_t, d_r) of the pose: d p_C = -d_t + [p_C]_x d_r + R_W_C^T d p_W.
-/// A point nearer than kMinDepth_m, or behind the camera, is projected as if it were at that depth:
-/// the error stays finite and pulls it forward again.
+/// in standard deviations. kRows is 3, or 2 where the right image has no measurement. With the
+/// pose's tangent (d_t, d_r): d p_C = -d_t + [p_C]_x d_r + R_W_C^T d p_W.
+/// A point that is closer than kMinDepth_m, or behind the camera, is projected as if it were at
+/// that depth, so the error stays finite and pulls the point forward again.
 /// Blocks: T_W_C (7), p_W (3).
 template <int kRows>
 class ReprojectionFactor final : public ceres::SizedCostFunction<kRows, kPoseBlockSize, 3> {
@@ -30,7 +31,8 @@ class ReprojectionFactor final : public ceres::SizedCostFunction<kRows, kPoseBlo
 
   using Weight = Eigen::Matrix<double, kRows, kRows>;
 
-  /// `camera` is not owned and must outlive the factor. All coordinates have the same error.
+  /// `camera` is not owned and must outlive the factor. All coordinates share one standard
+  /// deviation.
   ReprojectionFactor(const StereoCamera* camera, const Eigen::Vector3d& uvu_px, double sigma_px)
       : ReprojectionFactor(camera, uvu_px, Weight(Weight::Identity() / sigma_px)) {}
   /// `sqrt_information` is U, in 1 / px.

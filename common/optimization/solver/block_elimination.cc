@@ -15,7 +15,7 @@ constexpr int kUnset = -1;
 
 }  // namespace
 
-/// Works out panels and updates from the pattern.
+/// Works out the panels and updates from the sparsity pattern.
 class BlockElimination::Analysis {
  public:
   Analysis(const BlockMatrix& H, const std::vector<int>& front_begins, BlockElimination* result)
@@ -59,13 +59,13 @@ class BlockElimination::Analysis {
     if (first_pose_front < num_fronts) result_.poses_ = &result_.fronts_.back();
   }
 
-  /// Couplings of H, and those that earlier fronts leave behind.
+  /// Couplings from H and the fill-in that earlier fronts leave.
   void FindLaterBlocks(int f) {
     const Front& front = result_.fronts_[f];
     std::vector<int>& later = later_[f];
     const auto add = [&](int block) {
       if (block < front.end || place_[block] == f) return;
-      place_[block] = f;  // marks it
+      place_[block] = f;  // marks the block as found
       later.push_back(block);
     };
     for (int row = front.begin; row < front.end; ++row) {
@@ -92,7 +92,7 @@ class BlockElimination::Analysis {
     num_values_ += front.rows * front.stride;
   }
 
-  /// The blocks of H into panels, and those of the poses into the share of their layer.
+  /// Maps the blocks of H to the panels, and those of the poses to the share of their layer.
   void PlaceEntries() {
     std::vector<std::vector<PanelEntry>> by_layer(H_.num_groups());
     for (const Front& front : result_.fronts_) {
@@ -123,7 +123,8 @@ class BlockElimination::Analysis {
     result_.entry_begins_.push_back(static_cast<int>(result_.entries_.size()));
   }
 
-  /// Columns of panel `target` of the blocks of `later` from the first on that it holds itself.
+  /// Columns in panel `target` of the blocks in `later`, from `first` on, that the panel holds
+  /// itself.
   std::vector<int> PlacesIn(int target, const std::vector<int>& later, std::size_t first) const {
     const Front& front = result_.fronts_[target];
     std::vector<int> places(later.size(), kUnset);
@@ -137,7 +138,7 @@ class BlockElimination::Analysis {
       if (block == later[i]) places[i++] = col;
       col += H_.dim(block);
     }
-    AIRDOS_CHECK(i == later.size());  // else the target misses a coupling
+    AIRDOS_CHECK(i == later.size());  // otherwise the target lacks a coupling
     return places;
   }
 
@@ -145,7 +146,7 @@ class BlockElimination::Analysis {
     Front& front = result_.fronts_[f];
     const std::vector<int>& later = later_[f];
     std::vector<int> targets;
-    std::vector<std::vector<int>> places;  // by target
+    std::vector<std::vector<int>> places;  // indexed by target
     std::vector<int> target_of(later.size());
     for (std::size_t i = 0; i < later.size(); ++i) {
       const int target = front_of_[later[i]];
@@ -156,7 +157,7 @@ class BlockElimination::Analysis {
       target_of[i] = static_cast<int>(targets.size()) - 1;
     }
     front.runs_begin = front.runs_end = static_cast<int>(result_.runs_.size());
-    std::vector<std::size_t> firsts;  // first block of each run
+    std::vector<std::size_t> firsts;  // the first block of each run
     int col = front.rows;
     for (std::size_t i = 0; i < later.size(); ++i) {
       bool is_neighbour = i > 0 && target_of[i] == target_of[i - 1];
@@ -186,7 +187,7 @@ class BlockElimination::Analysis {
       const Run& run_a = result_.runs_[front->runs_begin + a];
       const int t = target_of[firsts[a]];
       const Front& target = result_.fronts_[targets[t]];
-      // No group takes updates from another but the poses.
+      // Groups do not update each other; they update only the poses.
       AIRDOS_CHECK(&target == result_.poses_ || target.group == front->group);
       const int panel =
           &target == result_.poses_ ? result_.share_offset(front->group) : target.offset;
@@ -205,9 +206,9 @@ class BlockElimination::Analysis {
 
   const BlockMatrix& H_;
   BlockElimination& result_;
-  std::vector<int> front_of_;  // by block
+  std::vector<int> front_of_;  // indexed by block
   std::vector<std::vector<int>> later_;
-  std::vector<int> first_child_, next_child_;  // fronts whose first later block is in this one
+  std::vector<int> first_child_, next_child_;  // elimination tree
   std::vector<int> place_;
   int num_values_ = 0;
 };
@@ -341,7 +342,7 @@ void BlockElimination::MoveShare(int group, const Eigen::VectorXd& d, Eigen::Vec
   }
 }
 
-/// y = U^-T b, and what comes later -= W^T y.
+/// y = U^-T b, then subtracts W^T y from the later unknowns' part.
 void BlockElimination::SolveForward(const Front& front, double* x) const {
   const double* const panel = panels_.data() + front.offset;
   const int num_later = front.width - front.rows;

@@ -6,45 +6,46 @@
 
 namespace airdos {
 
-/// A symmetric matrix of small dense blocks, of which those on and above the diagonal are held,
-/// row-major. Rows and columns are the unknowns in the order of their elimination, in groups. The
-/// matrix is a sum of layers, one per group: what the factors of that group say.
+/// A symmetric matrix of small dense row-major blocks, of which only those on and above the
+/// diagonal are stored. Its rows and columns are the unknowns in elimination order, in groups. It
+/// is the sum of layers, one per group, each holding the contributions of that group's factors.
 class BlockMatrix {
  public:
+  /// An off-diagonal block, in a linked list per row.
   struct Entry {
     int col = 0;
     int layer = 0;
-    int offset = 0;  ///< of its values
-    int next = -1;   ///< entry of the same row; -1: the last
+    int offset = 0;  ///< of its values in the layer
+    int next = -1;   ///< next entry of the same row; -1 for the last
   };
 
-  /// One dimension per unknown; first unknown of each group, and the number of unknowns. The
-  /// diagonal, each block in the layer of its group, is there from the start.
+  /// `dims`: size of each unknown. `group_begins`: first unknown of each group, then the number of
+  /// unknowns. The diagonal blocks, each in the layer of its group, exist from the start.
   BlockMatrix(const std::vector<int>& dims, const std::vector<int>& group_begins);
 
-  /// Where the values of block (row, col) start, row <= col; makes the block if there is none. The
-  /// blocks of a layer must be made one after the other.
+  /// Offset of the values of block (row, col), row <= col; creates the block if it does not exist.
+  /// All blocks of a layer must be created before those of the next.
   int Offset(int row, int col, int layer);
 
   int num_groups() const { return static_cast<int>(group_begins_.size()) - 1; }
   int group_begin(int group) const { return group_begins_[group]; }
   int num_blocks() const { return static_cast<int>(dims_.size()); }
   int dim(int block) const { return dims_[block]; }
-  /// Place of a block's first scalar in a vector; `num_blocks()` gives the number of scalars.
+  /// Index of a block's first scalar in a vector; `num_blocks()` gives the number of scalars.
   int begin(int block) const { return begins_[block]; }
   int num_scalars() const { return begins_.back(); }
-  /// Those of the last group.
+  /// Index of the first scalar of the last group, the poses.
   int first_pose_scalar() const { return begins_[group_begins_[num_groups() - 1]]; }
   int num_pose_scalars() const { return num_scalars() - first_pose_scalar(); }
 
   const std::vector<Entry>& entries() const { return entries_; }
-  /// The row's first entry, which is its diagonal.
+  /// The first entry of a row, which is its diagonal block.
   int first_entry(int row) const { return row; }
 
   void SetZero(int layer);
   double* values() { return values_.data(); }
   const double* values() const { return values_.data(); }
-  /// The diagonal of the sum of the layers.
+  /// Reads the diagonal of the sum of all layers.
   void ReadDiagonal(Eigen::VectorXd* diagonal) const;
 
  private:
@@ -55,8 +56,8 @@ class BlockMatrix {
   std::vector<int> dims_;
   std::vector<int> group_begins_;
   std::vector<int> begins_;
-  std::vector<Entry> entries_;  // the diagonal first
-  std::vector<Range> layers_;   // values, but for the diagonal
+  std::vector<Entry> entries_;  // the diagonal blocks first
+  std::vector<Range> layers_;   // values other than the diagonal's
   std::vector<double> values_;
 };
 

@@ -24,11 +24,11 @@ ceres::Problem::Options ProblemOptions() {
   options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.disable_all_safety_checks = true;  // they cost a third of the set-up
+  options.disable_all_safety_checks = true;  // they take a third of the set-up time
   return options;
 }
 
-/// On these graphs, of a few thousand unknowns with people, SuiteSparse takes twice the time of the
+/// On these graphs, a few thousand unknowns with people, SuiteSparse takes twice as long as the
 /// other two.
 ceres::SparseLinearAlgebraLibraryType SparseLibrary() {
   for (const auto library : {ceres::EIGEN_SPARSE, ceres::CX_SPARSE, ceres::SUITE_SPARSE}) {
@@ -70,9 +70,9 @@ void CeresMinimizer::DropRemovedFactors() {
   }
 }
 
-/// Without people the landmarks are eliminated first and the poses solved densely. People's points
-/// are coupled with each other over segments and time, so there no set of unknowns is independent;
-/// one sparse factorisation is then faster than any Schur ordering.
+/// Without people, the landmarks are eliminated first and the poses solved densely. With people,
+/// points are coupled with each other by segments and over time, so that no set of unknowns is
+/// independent, and one sparse factorisation is faster than any Schur ordering.
 MinimizerSummary CeresMinimizer::Minimize(const MinimizerOptions& options) {
   DropRemovedFactors();
   ceres::Solver::Options solver;
@@ -98,10 +98,10 @@ MinimizerSummary CeresMinimizer::Minimize(const MinimizerOptions& options) {
   ceres::Solver::Summary report;
   ceres::Solve(solver, &problem_, &report);
   MinimizerSummary summary;
-  summary.initial_cost = std::max(report.initial_cost, 0.0);  // Ceres says -1 where it gave up
+  summary.initial_cost = std::max(report.initial_cost, 0.0);  // Ceres reports -1 on failure
   summary.final_cost = std::max(report.final_cost, 0.0);
   summary.has_converged = report.termination_type == ceres::CONVERGENCE;
-  // Ceres says -1 where it gave up.
+  // Ceres reports -1 on failure.
   summary.num_iterations = std::max(report.num_successful_steps, 0);
   summary.num_iterations += std::max(report.num_unsuccessful_steps, 0);
   return summary;
@@ -112,9 +112,9 @@ std::optional<Matrix6d> CeresMinimizer::PoseCovariance(int block, double prior_s
   DropRemovedFactors();
   ceres::Problem::EvaluateOptions evaluate;
   evaluate.num_threads = 1;
-  evaluate.parameter_blocks.push_back(graph_->block(block).values);  // the first six columns
-  // Not problem_.GetParameterBlocks(): that is in order of addresses, and the last bits of the
-  // result would depend on where the memory happens to lie.
+  evaluate.parameter_blocks.push_back(graph_->block(block).values);  // of which six columns count
+  // Not problem_.GetParameterBlocks(): its order is that of the addresses, so the last bits of the
+  // result would depend on the memory layout.
   for (const Kind kind : {Kind::kPose, Kind::kLandmark, Kind::kTrack}) {
     for (const Block& other : graph_->blocks()) {
       if (other.kind != kind || other.is_constant) continue;

@@ -11,14 +11,14 @@
 
 namespace airdos {
 
-/// Minimizes a FactorGraph with Ceres: the reference that StructuredMinimizer is held against, and
-/// a way out should it ever be wrong.
+/// Minimizes a FactorGraph with Ceres: the reference for StructuredMinimizer, and the fallback
+/// should it ever be wrong.
 class CeresMinimizer {
  public:
-  /// The graph is not owned and must outlive this; blocks and factors must not be added later.
+  /// The graph is not owned and must outlive this; no blocks or factors may be added afterwards.
   explicit CeresMinimizer(FactorGraph* graph);
 
-  /// Levenberg-Marquardt from the graph's values, which become the result.
+  /// Levenberg-Marquardt, starting from the graph's values, which are overwritten with the result.
   MinimizerSummary Minimize(const MinimizerOptions& options);
   /// See StructuredMinimizer.
   std::optional<Matrix6d> PoseCovariance(int block, double prior_sigma);
@@ -29,7 +29,7 @@ class CeresMinimizer {
   FactorGraph* graph_;
   PoseManifold manifold_;
   ceres::Problem problem_;
-  std::vector<ceres::ResidualBlockId> ids_;  // by factor; null once it is removed
+  std::vector<ceres::ResidualBlockId> ids_;  // indexed by factor; null once removed
   bool has_tracks_ = false;
   bool has_landmarks_ = false;
 };

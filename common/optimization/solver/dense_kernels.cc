@@ -8,19 +8,19 @@
 namespace airdos {
 namespace {
 
-/// Doubles side by side, of which one register holds two, or four with AVX. Each is summed up by
-/// itself, in the same order either way, and never fused: the bits of a result do not depend on the
-/// processor.
+/// kNum adjacent doubles; a register holds two, or four with AVX. Each is accumulated on its own,
+/// in the same order either way, and without fused multiply-adds, so results are identical to the
+/// bit on every processor.
 template <int kNum>
 struct Doubles {
-  // The vector may lie at any double.
+  // The vector need only be aligned like a double.
   typedef double Vector __attribute__((vector_size(kNum * sizeof(double)), aligned(8), may_alias));
 };
 
-constexpr int kTileRows = 4;  // of 4 x 8 doubles, which stay in registers
+constexpr int kTileRows = 4;  // a tile is 4 x 8 doubles, which stay in registers
 constexpr int kRowsPerStep = 8;
 
-/// kRows x (kNum kCols) of C, in registers of kCols each.
+/// A tile of kRows x (kNum kCols) entries of C, in vectors of kCols doubles.
 template <int kRows, int kNum, int kCols>
 [[gnu::always_inline]] inline void SubtractTile(const double* a, const double* b,
                                                 const ProductShape& shape, double* c) {
@@ -52,7 +52,7 @@ template <int kRows, int kNum, int kCols>
   }
 }
 
-/// kRows rows of C from column `j` on.
+/// kRows rows of C, from column `j` on.
 template <int kRows>
 [[gnu::always_inline]] inline void SubtractRows(const double* a, const double* b,
                                                 const ProductShape& shape, int j, double* c) {
@@ -177,6 +177,7 @@ bool FactorisePanel(double* panel, int n, int width, int stride) {
 }
 
 AddProduct FindAddProduct(int rows, int a, int b) {
+  for (const int size : {a, b}) AIRDOS_CHECK(size == 1 || size == 3 || size == 6);
   switch (rows) {
     case 1:
       return FindAddProduct<1>(a, b);

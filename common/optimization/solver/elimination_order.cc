@@ -17,7 +17,7 @@ constexpr std::size_t kMaxSlice = 64;
 
 /// One track of the graph.
 struct Track {
-  std::map<int, std::vector<int>> slices;  // blocks, in order of time
+  std::map<int, std::vector<int>> slices;  // blocks, in temporal order
   std::vector<int> whole;
 };
 
@@ -51,7 +51,7 @@ class Orderer {
     }
     for (const Track& track : tracks) AddTrack(track);
     BeginGroup();
-    // Not in any graph that we make: one group of all that is no pose.
+    // Does not occur in the graphs that we build: put everything but the poses in one group.
     if (are_groups_coupled_) order_.group_begins = {0, order_.group_begins.back()};
     if (!poses.empty()) order_.fronts.push_back(poses);
     BeginGroup();
@@ -107,16 +107,16 @@ class Orderer {
     AddSlice(*slices[middle], is_piece);
   }
 
-  /// One by one, least neighbours within the slice first, until the rest all know each other; that
-  /// is one front. Between two pieces (not `is_piece`) all that has partners in other slices is
-  /// left for that front.
+  /// Eliminates blocks one at a time, fewest neighbours within the slice first, until the remaining
+  /// ones are all connected with each other; these form one front. In a slice between two pieces
+  /// (not `is_piece`), every block with a partner in another slice is left for that front.
   void AddSlice(const std::vector<int>& blocks, bool is_piece) {
-    if (blocks.size() > kMaxSlice) {  // unlike anything we make; any order is right
+    if (blocks.size() > kMaxSlice) {  // larger than any that we build; any order is correct
       order_.fronts.push_back(blocks);
       return;
     }
     Adjacency adjacent(blocks.size(), 0);
-    std::uint64_t left = 0, alone = 0;  // of those left: to be eliminated one by one
+    std::uint64_t left = 0, alone = 0;  // `alone`: still to be eliminated one at a time
     for (std::size_t i = 0; i < blocks.size(); ++i) place_[blocks[i]] = i;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       left |= std::uint64_t{1} << i;
@@ -128,7 +128,7 @@ class Orderer {
     while (alone != 0) {
       const std::size_t best = LeastNeighbours(adjacent, alone);
       const std::uint64_t bit = std::uint64_t{1} << best;
-      if (alone == left && (adjacent[best] | bit) == left) break;  // the least knows all
+      if (alone == left && (adjacent[best] | bit) == left) break;  // all left are connected
       order_.fronts.push_back({blocks[best]});
       alone &= ~bit;
       left &= ~bit;
@@ -144,7 +144,7 @@ class Orderer {
     if (!rest.empty()) order_.fronts.push_back(std::move(rest));
   }
 
-  using Adjacency = std::vector<std::uint64_t>;  // bits: places in the slice
+  using Adjacency = std::vector<std::uint64_t>;  // bit sets over the places in the slice
 
   static std::size_t LeastNeighbours(const Adjacency& adjacent, std::uint64_t candidates) {
     std::size_t best = 0;
@@ -162,7 +162,7 @@ class Orderer {
   std::vector<char> is_used_;
   std::vector<char> has_other_slice_;
   std::vector<std::vector<int>> neighbours_;  // within the slice
-  std::vector<std::size_t> place_;            // in its slice
+  std::vector<std::size_t> place_;            // of a block in its slice
   bool are_groups_coupled_ = false;
   EliminationOrder order_;
 };

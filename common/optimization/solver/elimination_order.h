@@ -7,27 +7,29 @@
 
 namespace airdos {
 
-/// In which order the unknowns of a graph are eliminated. A front is a set of unknowns that are
+/// The order in which the unknowns of a graph are eliminated. A front is a set of unknowns that are
 /// eliminated together.
 struct EliminationOrder {
-  /// Blocks of the graph that are free and have factors, by front.
+  /// For each front, its blocks in the graph: those that are free and have factors.
   std::vector<std::vector<int>> fronts;
-  /// Fronts of all landmarks, of each track, of the poses: [begins[i], begins[i + 1]).
+  /// The fronts of group i are [group_begins[i], group_begins[i + 1]): all landmarks, then one
+  /// group per track, then the poses.
   std::vector<int> group_begins;
 };
 
-/// Landmarks, then track by track, then the poses in one front. Within a track:
+/// Landmarks first, then track by track, then the poses in one front. Within a track:
 ///
-///  1. its slices by nested dissection in time: the slice in the middle parts the track into two
-///     that do not know of each other, and is eliminated after both. Against a sweep from end to
-///     end this halves the cost and more, as every piece carries the poses of its own frames only;
-///  2. within a slice that stands between two pieces, first what has no partner in other slices
-///     (the joints of the limbs), each alone, the one with the fewest neighbours first: from the
-///     leaves to the root; then the rest (torso and velocity; all points of a rigid object) in
-///     one front. A slice that is not parted any more is eliminated the same way altogether;
-///  3. what belongs to the whole track (lengths, a motion over the track).
+///  1. its slices by nested dissection in time: the middle slice splits the track into two pieces
+///     that are not coupled with each other, and is eliminated after both. Compared with a sweep
+///     from end to end, this more than halves the cost, since each piece carries only the poses of
+///     its own frames;
+///  2. within a slice between two pieces: first the blocks without a partner in another slice (the
+///     joints of the limbs), one at a time, fewest neighbours first, that is, from the leaves to
+///     the root; then the rest (torso and velocity; all points of a rigid object) in one front. A
+///     slice that is not split any further is eliminated in the same way as a whole;
+///  3. what belongs to the whole track (segment lengths, or one motion for the track).
 ///
-/// Any order is right: what couples unknowns in a way not foreseen here only costs more.
+/// Any order is correct: a coupling that was not foreseen here only costs time.
 EliminationOrder OrderForElimination(const FactorGraph& graph);
 
 }  // namespace airdos

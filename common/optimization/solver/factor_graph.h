@@ -12,83 +12,92 @@
 
 namespace airdos {
 
-/// A least squares problem as blocks of unknowns and factors between them, which any of our
-/// minimizers can take: cost = 1/2 sum loss(|r|^2). The factors are Ceres' cost functions, so that
-/// there is one source of residuals and Jacobians. Values are not owned and change in place.
+/// A least-squares problem as blocks of unknowns and factors between them, for any of our
+/// minimizers: cost = 1/2 sum loss(|r|^2). The factors are Ceres cost functions, so residuals and
+/// Jacobians are written only once. Values are not owned and are changed in place.
 class FactorGraph {
  public:
   static constexpr int kMaxBlocks = 3;     ///< of a factor
   static constexpr int kMaxResiduals = 6;  ///< of a factor
 
-  /// Where an unknown stands in the elimination; says nothing about what it means.
+  /// The role of an unknown in the elimination; says nothing about its meaning.
   enum class Kind {
     kLandmark,  ///< coupled with poses only
-    kTrack,     ///< of one moving object: coupled within its track, and with poses
+    kTrack,     ///< part of one moving object: coupled within its track and with poses
     kPose,
   };
+  /// One unknown.
   struct Block {
     static constexpr int kWholeTrack = -1;
 
     double* values = nullptr;
-    int size = 3;  ///< of `values`; kPoseBlockSize: a rigid motion, with PoseManifold
+    /// Of `values`: 1, 3, or kPoseBlockSize for a rigid motion, with PoseManifold. dense_kernels.h
+    /// has products for blocks of these sizes only; another size must be added there first.
+    int size = 3;
     Kind kind = Kind::kPose;
     bool is_constant = false;
-    int track = 0;            ///< kTrack: which
-    int slice = kWholeTrack;  ///< kTrack: its place in time, any number that grows with it
+    int track = 0;            ///< kTrack: its track
+    int slice = kWholeTrack;  ///< kTrack: any number that increases with time
 
     bool is_on_manifold() const { return size == kPoseBlockSize; }
     int tangent_size() const { return is_on_manifold() ? 6 : size; }
   };
+  /// One term of the cost, with the blocks that it depends on.
   struct Factor {
     std::unique_ptr<ceres::CostFunction> cost;
-    const ceres::LossFunction* loss = nullptr;  ///< not owned; null: none
+    const ceres::LossFunction* loss = nullptr;  ///< not owned; may be null
     int num_blocks = 0;
     std::array<int, kMaxBlocks> blocks = {};
     bool is_removed = false;
   };
 
-  /// Both return the index of what they add.
+  /// Both return the index of the new element. Fails a check, in every build type, on a programming
+  /// error: a block without values or with another size than above; a factor without residuals or
+  /// with more than kMaxResiduals, or with blocks that do not exist or differ in size from what its
+  /// cost function says.
   int AddBlock(const Block& block);
   template <class... Blocks>
   int AddFactor(std::unique_ptr<ceres::CostFunction> cost, const ceres::LossFunction* loss,
                 Blocks... blocks) {
     static_assert(sizeof...(blocks) <= kMaxBlocks);
-    factors_.push_back({std::move(cost), loss, sizeof...(blocks), {blocks...}, false});
-    return static_cast<int>(factors_.size()) - 1;
+    return AddFactor({std::move(cost), loss, sizeof...(blocks), {blocks...}, false});
   }
   void SetConstant(int block) { blocks_[static_cast<std::size_t>(block)].is_constant = true; }
-  /// Removed factors stay in place and count no more.
+  /// A removed factor keeps its index but no longer counts.
   void RemoveFactor(int factor) { factors_[static_cast<std::size_t>(factor)].is_removed = true; }
 
   const std::vector<Block>& blocks() const { return blocks_; }
   const std::vector<Factor>& factors() const { return factors_; }
   const Block& block(int index) const { return blocks_[static_cast<std::size_t>(index)]; }
 
-  /// All blocks of the factor are constant: it only adds to the cost.
+  /// Whether all blocks of the factor are constant, so that it adds only a constant to the cost.
   bool IsFixed(const Factor& factor) const;
-  /// |r|^2 before the loss; not finite where the factor cannot be evaluated.
+  /// |r|^2 before the loss; not finite if the factor cannot be evaluated.
   double SquaredError(int factor) const;
 
  private:
+  int AddFactor(Factor factor);
+
   std::vector<Block> blocks_;
   std::vector<Factor> factors_;
 };
 
-/// What a minimizer is asked for and what it says.
+/// Settings of a minimization.
 struct MinimizerOptions {
   int max_iterations = 50;
   double function_tolerance = 1e-6;  ///< relative change of cost
   double gradient_tolerance = 1e-12;
   double parameter_tolerance = 1e-10;
-  /// StructuredMinimizer only. A track that a step makes worse stays where it was and is damped
-  /// more from then on, while the rest goes on; and what follows its linearization well is not
-  /// linearized and eliminated again (see StructuredMinimizer). Else the whole step is taken or
-  /// not, and everything is linearized anew, as Ceres does.
+  /// StructuredMinimizer only. A track that a step makes worse is put back and damped more from
+  /// then on, while the rest proceeds; and a track that follows its linearization well is not
+  /// linearized and eliminated again (see StructuredMinimizer). If false, each step is accepted or
+  /// rejected as a whole and everything is linearized again, as in Ceres.
   bool steps_by_track = false;
 };
+/// Outcome of a minimization.
 struct MinimizerSummary {
   bool has_converged = false;
-  int num_iterations = 0;  ///< steps that were tried, as Ceres counts them
+  int num_iterations = 0;  ///< steps tried, counted as Ceres does
   double initial_cost = 0;
   double final_cost = 0;
 };

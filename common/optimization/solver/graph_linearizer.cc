@@ -14,7 +14,7 @@ constexpr double kInvalid = std::numeric_limits<double>::quiet_NaN();
 
 struct Weighted {
   double cost = 0;    // loss(|r|^2)
-  double weight = 1;  // sqrt(loss'), of the residual
+  double weight = 1;  // of the residual: sqrt(loss')
 };
 
 Weighted ApplyLoss(const ceres::LossFunction* loss, const double* residuals, int num) {

@@ -10,15 +10,15 @@
 namespace airdos {
 
 inline constexpr int kPoseBlockSize = 7;
-/// A rigid transform T_A_B as Ceres holds it: translation (m), then the quaternion x, y, z, w.
+/// A rigid transform T_A_B in Ceres' layout: translation (m), then the quaternion x, y, z, w.
 using PoseBlock = std::array<double, kPoseBlockSize>;
 
 PoseBlock ToPoseBlock(const Se3& T_A_B);
 Se3 FromPoseBlock(const double* block);
 
-/// Moves a PoseBlock by the tangent of common/geometry/se3.h. PlusJacobian is [I6; 0], so a factor
-/// writes its derivatives with respect to that tangent into the first six columns and zero into
-/// the seventh.
+/// Moves a PoseBlock along the tangent of common/geometry/se3.h. PlusJacobian is [I6; 0], so a
+/// factor writes its derivatives with respect to that tangent into the first six columns and zeros
+/// into the seventh.
 class PoseManifold final : public ceres::Manifold {
  public:
   int AmbientSize() const override { return kPoseBlockSize; }

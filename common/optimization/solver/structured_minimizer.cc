@@ -9,13 +9,14 @@
 namespace airdos {
 namespace {
 
-// As Ceres has them.
+// As in Ceres.
 constexpr double kMaxRadius = 1e16;
 constexpr double kMinRadius = 1e-32;
 constexpr double kMinDiagonal = 1e-6;
 constexpr double kMaxDiagonal = 1e32;
-constexpr double kMinQuality = 1e-3;  // of a step that is taken
-// Ours. A group stays linearized where its cost followed the prediction to this many tolerances.
+constexpr double kMinQuality = 1e-3;  // of an accepted step
+// Our own. A group stays linearized if its cost followed the prediction to within this many
+// tolerances.
 constexpr double kKeptTolerance = 100;
 constexpr int kMaxInvalidSteps = 5;  // in a row
 
@@ -72,7 +73,7 @@ void StructuredMinimizer::TrustRegion::Reject() {
   decrease_factor *= 2;
 }
 
-/// Ceres damps the diagonal of the Hessian of scaled unknowns; the scale is that of the start.
+/// Ceres damps the diagonal of the Hessian in scaled unknowns, with the scale fixed at the start.
 void StructuredMinimizer::SetDamping(double radius) {
   damping_ = (diagonal_.array() * scale_.array().square()).max(kMinDiagonal).min(kMaxDiagonal) /
              (radius * scale_.array().square());
@@ -108,7 +109,7 @@ double StructuredMinimizer::MaxGradient() const {
   return largest;
 }
 
-/// Returns false where the step is of no use.
+/// Returns false if the step is unusable.
 bool StructuredMinimizer::ComputeStep() {
   const int poses = H_->first_pose_scalar(), num_poses = H_->num_pose_scalars();
   step_.segment(poses, num_poses) = -gradient_.segment(poses, num_poses);
@@ -217,7 +218,7 @@ double StructuredMinimizer::RestoreWorseTracks() {
       new_costs_[group] = cost;
       caution_[group] *= 3 * caution_step_[group];
       caution_step_[group] *= 2;
-    } else {  // worse still, as its cameras moved
+    } else {  // worse there too, because its cameras have moved
       ApplyStep(group);
     }
   }
@@ -320,7 +321,7 @@ MinimizerSummary StructuredMinimizer::Minimize(const MinimizerOptions& options) 
 
 std::optional<Matrix6d> StructuredMinimizer::PoseCovariance(int block, double prior_sigma) {
   const auto place = std::find(order_.begin(), order_.end(), block);
-  if (place == order_.end()) {  // nothing says anything about it
+  if (place == order_.end()) {  // no factor depends on it
     return Matrix6d(prior_sigma * prior_sigma * Matrix6d::Identity());
   }
   LinearizeAll();

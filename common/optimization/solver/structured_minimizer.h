@@ -15,79 +15,78 @@ namespace airdos {
 
 // clang-format off
 /// Levenberg-Marquardt for graphs of cameras, static landmarks and moving objects. The normal
-/// equations have the shape of an arrow; everything but the poses is eliminated piece by piece:
+/// equations have an arrow structure; everything but the poses is eliminated piece by piece:
 ///
 ///      landmarks | track 1     : l | ... | track n     : l | poses
 ///    [ o         |                 |     |                 | x x ]
-///    [   o       |                 |     |                 | x x ]  3 x 3 blocks, one a landmark
+///    [   o       |                 |     |                 | x x ]  3 x 3 blocks, one per landmark
 ///    [     o     |                 |     |                 | x x ]
 ///    [ ----------+-----------------+-----+-----------------+---- ]
 ///    [           | 1 a         : l |     |                 | x   ]  slices 1, 2, 3 ... in time,
 ///    [           | a 2 b       : l |     |                 | x x ]  each coupled with its
 ///    [           |   b 3 .     : l |     |                 |   x ]  neighbours by motion (a, b)
-///    [           | l l l .     : L |     |                 |     ]  and with what the track shares
+///    [           | l l l .     : L |     |                 |     ]  and with the track's shared l
 ///    [ ----------+-----------------+-----+-----------------+---- ]
 ///    [                              ...                          ]
 ///    [ ----------+-----------------+-----+-----------------+---- ]
 ///    [ symmetric                                           | P P ]  poses, dense, at the end
 ///    [                                                     | P P ]
 ///
-/// What a track shares (l, L) are its segment lengths, or one motion over all of it; x couples a
-/// slice with the pose of its frame.
+/// A track shares (l, L) its segment lengths, or one motion for the whole track; x couples a slice
+/// with the pose of its frame.
 // clang-format on
 ///
-/// elimination_order.h says in which order a track is eliminated; block_elimination.h, how. With n
-/// people over w frames, b scalars of torso and velocity in a slice (21), l of lengths (14), the
-/// multiply-adds of one step are about
+/// elimination_order.h explains in which order a track is eliminated, block_elimination.h how. With
+/// n people over w frames, b scalars of torso and velocity per slice (21) and l of lengths (14),
+/// one step takes about
 ///
 ///   n w (b / 2) (2 b + l + 6 w')^2 + landmarks (6 w)^2 / 2 * 3 + (6 w)^3 / 6
 ///
-/// with w' the frames of the piece that a slice carries the poses of: a few for most slices, w for
-/// one. So it is linear in people, and grows with the window by w to w log w while 6 w < 2 b + l,
-/// towards w^3 beyond.
+/// multiply-adds, where w' is the number of frames whose poses a slice's piece carries: a few for
+/// most slices, w for one of them. The cost is therefore linear in the number of people. In the
+/// window it grows like w to w log w while 6 w < 2 b + l, and towards w^3 beyond.
 ///
-/// The steps are those of Ceres' LevenbergMarquardtStrategy and TrustRegionMinimizer but for
-/// rounding: the same damping (Jacobi-scaled clamped diagonal), radius, tolerances and counting of
-/// iterations. An iteration allocates nothing; the result depends on the graph only, not on
+/// Up to rounding, the steps are those of Ceres' LevenbergMarquardtStrategy and
+/// TrustRegionMinimizer: the same damping (Jacobi-scaled clamped diagonal), radius, tolerances and
+/// iteration count. An iteration allocates nothing; the result depends on the graph only, not on
 /// addresses.
 ///
-/// With `steps_by_track` it parts from Ceres in two things, made for a window that is solved again
-/// with every frame and starts near its solution (warm):
-///  - A track (or the landmarks) whose cost a step makes worse is put back, if that lowers its
-///    cost, and damped more until its steps succeed. One joint on the kink of its segment's length
-///    then does not shrink the steps of all others.
+/// With `steps_by_track` it departs from Ceres in two ways, designed for a window that is solved
+/// again on every frame and starts close to its solution (warm start):
+///  - A track whose cost a step increases is put back, if that lowers its cost,
+///    and damped more until its steps succeed. A single joint at the kink of its segment's length
+///    then does not shrink everybody else's steps.
 ///  - A track whose cost followed the linear prediction, or hardly changed, keeps its linearization
-///    and its elimination. It has become a quadratic prior on the poses, S d = -r, of which only r
-///    moves on with them; its unknowns follow by back-substitution. Costs are always evaluated in
-///    full, so that no step is taken that raises the cost, and the stop is decided by the true
-///    cost.
+///    and its elimination. It acts as a quadratic prior on the poses, S d = -r, of which only r is
+///    updated as they move; its unknowns follow by back-substitution. Costs are always evaluated in
+///    full: no step that raises the cost is accepted, and the true cost decides when to stop.
 /// What leaves the window is fixed, not marginalised: as key frames that hold the landmarks
 /// (WindowMap), and as known segment lengths of people (HumanTracks).
 class StructuredMinimizer {
  public:
-  /// The graph is not owned and must outlive this; blocks and factors must not be added later.
-  /// `memory` (or null) lends its capacity: handed from solve to solve it saves the system the work
-  /// of clearing pages.
+  /// The graph is not owned and must outlive this; no blocks or factors may be added afterwards.
+  /// `memory` (may be null) lends its capacity: passing it from solve to solve saves the system
+  /// from clearing pages.
   explicit StructuredMinimizer(FactorGraph* graph, std::vector<double>* memory = nullptr);
 
-  /// Levenberg-Marquardt from the graph's values, which become the result. Where the cost at the
-  /// start is not finite nothing moves. From one call to the next factors may be removed, but
-  /// values must stay as they are.
+  /// Levenberg-Marquardt, starting from the graph's values, which are overwritten with the result.
+  /// If the initial cost is not finite, nothing moves. Factors may be removed between calls, but
+  /// values must not be changed.
   MinimizerSummary Minimize(const MinimizerOptions& options);
 
-  /// Marginal covariance of a free pose at the graph's values: of the inverse Gauss-Newton Hessian
-  /// with losses applied, after adding 1 / prior_sigma^2 to the diagonal. Nothing if that cannot be
-  /// factorised.
+  /// Marginal covariance of a free pose at the graph's values, from the inverse of the Gauss-Newton
+  /// Hessian with losses applied and 1 / prior_sigma^2 added to its diagonal. Nothing if that
+  /// matrix cannot be factorised.
   std::optional<Matrix6d> PoseCovariance(int block, double prior_sigma);
 
-  /// One undamped step of Gauss and Newton with `damping` on the diagonal, in the order of order();
-  /// values stay. Nothing if the system cannot be factorised.
+  /// One undamped Gauss-Newton step with `damping` added to the diagonal, in the order of order();
+  /// the values do not change. Nothing if the system cannot be factorised.
   std::optional<Eigen::VectorXd> LinearStep(const Eigen::VectorXd& damping);
-  /// The blocks of the graph that are solved for, as they stand in the linear system.
+  /// The blocks of the graph that are solved for, in the order of the linear system.
   const std::vector<int>& order() const { return order_; }
 
  private:
-  /// The trust region, as a radius, and how it follows the success of steps.
+  /// The trust-region radius, and how it adapts to the success of steps.
   struct TrustRegion {
     double radius = 1e4;
     double decrease_factor = 2;
@@ -95,15 +94,16 @@ class StructuredMinimizer {
     void Reject();
   };
 
+  /// Norms for the test of the parameter tolerance.
   struct Norms {
     double values = 0;  ///< of the saved values
-    double step = 0;    ///< of how far the graph's values are from them
+    double step = 0;    ///< of the graph's values minus the saved ones
   };
 
   int num_groups() const { return linearizer_->num_groups(); }
   int ScalarBegin(int group) const { return H_->begin(group_begins_[group]); }
   int NumScalars(int group) const { return ScalarBegin(group + 1) - ScalarBegin(group); }
-  /// All groups but those that are kept. Returns the cost.
+  /// Linearizes all groups but those that are kept. Returns the cost.
   double Linearize();
   void LinearizeAll();
   double MaxGradient() const;
@@ -112,18 +112,21 @@ class StructuredMinimizer {
   void SaveValues();
   void RestoreValues(int group);
   void RestoreValues();
-  /// Costs of the groups at the graph's values into `new_costs_`; returns their sum.
+  /// Writes the groups' costs at the graph's values to `new_costs_`; returns their sum.
   double Evaluate();
-  /// Puts tracks back that are better off where they were. Returns what that saves.
+  /// Puts back the tracks that were better off before the step. Returns by how much that lowers the
+  /// cost.
   double RestoreWorseTracks();
-  /// A group's values in the graph: the saved ones moved by the step.
+  /// Sets a group's values in the graph to the saved ones moved by the step.
   void ApplyStep(int group);
   Norms MeasureStep() const;
-  /// After a step: by how much the group's cost should have fallen. Its unknowns are now where its
-  /// own equations want them, and its share of the poses' equations follows these.
+  /// Returns by how much the step should have lowered the group's cost. Then moves the group's
+  /// linearization: its unknowns are where its own equations put them, and its share of the poses'
+  /// equations is updated to match.
   double PredictAndMoveShare(int group);
-  /// Groups that did so but for this share of their cost are not linearized and eliminated again:
-  /// in the next steps they are a quadratic prior on the poses, which their unknowns follow.
+  /// Groups whose cost followed the prediction to within this fraction are not linearized and
+  /// eliminated again: in the next steps they are a quadratic prior on the poses, which their
+  /// unknowns follow.
   void KeepPredictedGroups(double tolerance);
 
   FactorGraph* graph_;
@@ -134,8 +137,9 @@ class StructuredMinimizer {
   PoseManifold manifold_;
 
   Eigen::VectorXd gradient_, diagonal_, scale_, damping_, step_;
-  std::vector<double> saved_;  // values of the blocks in order_
-  // Landmarks, each track, poses: first block, value in saved_ and scalar; cost; extra damping.
+  std::vector<double> saved_;  // values of the blocks of order_
+  // Per group (landmarks, each track, poses): first block, first value in saved_, whether it is
+  // kept, cost, extra damping.
   std::vector<int> group_begins_;
   std::vector<std::size_t> value_begins_;
   std::vector<char> is_kept_;

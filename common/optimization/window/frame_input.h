@@ -10,7 +10,7 @@
 
 namespace airdos {
 
-/// A static landmark as the front end saw it in one frame.
+/// A static landmark as the frontend saw it in one frame.
 struct StaticObservation {
   LandmarkId id;
   Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();  ///< u_left, v, u_right
@@ -22,11 +22,13 @@ struct StaticObservation {
 struct JointObservation {
   int joint = 0;  ///< COCO-18, 0..13
   Eigen::Vector3d uvu_px = Eigen::Vector3d::Zero();
-  /// Of uvu_px; positive definite. Where the disparity was measured in the images, u_left and
-  /// u_right err together: the depth is known far better than either says by itself.
+  /// Of uvu_px; positive definite. Where the disparity was measured in the images, the errors of
+  /// u_left and u_right are correlated: depth is known far better than either column alone would
+  /// suggest.
   Eigen::Matrix3d covariance_px2 = Eigen::Matrix3d::Identity();
 };
 
+/// One person in one frame.
 struct HumanObservation {
   HumanId id;
   std::vector<JointObservation> joints;  ///< sorted by joint, each at most once
@@ -36,16 +38,17 @@ struct HumanObservation {
 struct FrameInput {
   FrameId id;
   double time_s = 0;
-  /// The front end's pose in its odometry frame O, which is never corrected: only the change from
-  /// frame to frame is used. Nothing where the front end said nothing.
+  /// The frontend's pose in its odometry frame O, which is never corrected: only the change between
+  /// frames is used. Nothing if the frontend did not report one.
   std::optional<Se3> T_O_C;
-  /// First frame of O: poses in different O cannot be compared (the front end was started again).
+  /// First frame of O. Poses in different O cannot be compared: the frontend was restarted in
+  /// between.
   FrameId odometry_start;
-  /// The front end's pose in W as it knows it from earlier answers. Used in the first frame only,
-  /// which it ties to W; without it T_O_C does.
+  /// The frontend's pose in W, as it knows it from earlier answers of the optimizer. Used in the
+  /// first frame only, to tie it to W; without it, T_O_C does so.
   std::optional<Se3> T_W_C;
-  /// By how much constant velocity may be wrong in this frame, as the front end has learnt of its
-  /// carrier: standard deviation per axis of the pose. Nothing if it did not say.
+  /// Error of the constant-velocity prediction in this frame, as the frontend has learnt it for its
+  /// carrier: standard deviation per axis of the pose. Nothing if it did not report one.
   std::optional<double> motion_sigma_position_m;
   std::optional<double> motion_sigma_orientation_rad;
   std::vector<StaticObservation> features;

@@ -70,7 +70,8 @@ void HumanTracks::AddTo(BundleProblem* problem) const {
       const std::optional<SegmentLengths::Length> length = person.lengths.Find(segment);
       if (!length) continue;
       human.segment_length_m[segment] = length->mean_m;
-      // What the window's frames say about a length, they say to the solver themselves.
+      // The solver gets the window's own measurements of a length directly, so they must not count
+      // here too.
       const std::optional<SegmentLengths::Length> known =
           person.lengths_before_window.Find(segment);
       if (!known) continue;
@@ -89,9 +90,9 @@ void HumanTracks::Absorb(const BundleProblem& problem) {
       const Eigen::Vector3d p_C = frame.T_W_C.inverse() * state.p_W;
       const bool is_possible = p_C.allFinite() && p_C.z() > 0 && p_C.z() < 2 * options_.max_depth_m;
       Joint& joint = person.sightings.at(frame.id).at(state.joint);
-      joint.is_eliminated = state.is_eliminated || !is_possible;
-      // A joint that lost its measurement starts from it again next time.
-      joint.p_C = joint.is_eliminated ? joint.p_C_measured : p_C;
+      joint.is_rejected = state.is_rejected || !is_possible;
+      // A joint whose measurement was rejected starts from that measurement again next time.
+      joint.p_C = joint.is_rejected ? joint.p_C_measured : p_C;
     }
   }
 }
@@ -107,7 +108,7 @@ std::vector<HumanState> HumanTracks::Describe(FrameId frame, const Se3& T_W_C,
     state.frame = frame;
     state.time_s = times_s_.at(frame);
     for (const auto& [joint, seen] : sighting->second) {
-      if (seen.is_eliminated) continue;
+      if (seen.is_rejected) continue;
       state.joints.push_back({joint, T_W_C * seen.p_C, T_W_C * seen.p_C_measured});
     }
     for (std::size_t segment = 0; segment < kNumSegments; ++segment) {

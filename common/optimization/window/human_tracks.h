@@ -14,20 +14,23 @@
 
 namespace airdos {
 
+/// Limits of the optimizer's memory of people.
 struct HumanTracksOptions {
-  int window_frames = 8;          ///< newest frames whose people are in the adjustment
-  int forget_after_frames = 100;  ///< the lengths of a person not seen for longer are forgotten
+  int window_frames = 8;          ///< newest frames whose people are adjusted
+  int forget_after_frames = 100;  ///< then the lengths of an unseen person are forgotten
   double min_disparity_px = 0.5;  ///< a joint with less has no depth and is left out
   double max_depth_m = 60;
 };
 
-/// One person at one frame, as optimized.
+/// One person in one frame, as optimized.
 struct HumanState {
+  /// A joint's position in W.
   struct JointPosition {
     int joint = 0;  ///< COCO-18
     Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
-    Eigen::Vector3d p_W_measured = Eigen::Vector3d::Zero();  ///< triangulated, with the same camera
+    Eigen::Vector3d p_W_measured = Eigen::Vector3d::Zero();  ///< as triangulated, same camera
   };
+  /// A segment's length.
   struct SegmentLength {
     int segment = 0;  ///< index into kSegments
     double length_m = 0;
@@ -40,43 +43,46 @@ struct HumanState {
   std::vector<BundleProblem::PartMotion> motions;
 };
 
-/// The optimizer's memory of people: what was seen of each in the last frames, and what all frames
-/// said about the lengths of their segments (see SegmentLengths). Joints are kept in the camera's
-/// axes, so that they move along when poses are corrected.
+/// The optimizer's memory of people: what the last frames showed of each, and what all frames have
+/// measured of their segment lengths (see SegmentLengths). Joints are kept in camera coordinates,
+/// so that they follow when poses are corrected.
 class HumanTracks {
  public:
   explicit HumanTracks(const HumanTracksOptions& options) : options_(options) {}
 
-  /// Joints without depth are left out.
+  /// Adds the newest frame. Joints without depth are left out.
   void AddFrame(const StereoCamera& camera, const FrameInput& input);
 
   /// Fills `problem->humans` from the newest frames, which `problem->frames` must hold.
   void AddTo(BundleProblem* problem) const;
-  /// Takes joints back from a solved problem, relative to its cameras. Joints that no body has are
-  /// not taken, nor are lengths: those come from the measurements of all frames.
+  /// Takes joints back from a solved problem, relative to its cameras. Joints that ended up behind
+  /// the camera or impossibly far away are not taken, and neither are lengths: those come from the
+  /// measurements of all frames.
   void Absorb(const BundleProblem& problem);
 
   /// Everyone seen in `frame` (one of frames()), with `T_W_C` as its camera and the motions of
-  /// `problem`. Joints whose reprojection was eliminated are left out.
+  /// `problem`. Joints whose reprojection was rejected are left out.
   std::vector<HumanState> Describe(FrameId frame, const Se3& T_W_C,
                                    const BundleProblem& problem) const;
   /// The frames in memory, oldest first.
   const std::vector<FrameId>& frames() const { return frames_; }
-  /// The oldest frame leaves with the next one.
+  /// Whether the next frame pushes out the oldest one.
   bool is_full() const { return static_cast<int>(frames_.size()) == options_.window_frames; }
 
  private:
+  /// A joint in one frame.
   struct Joint {
     Eigen::Vector3d uvu_px;
     Eigen::Matrix3d covariance_px2;
     Eigen::Vector3d p_C;           ///< as triangulated, then as optimized
     Eigen::Vector3d p_C_measured;  ///< as triangulated
-    bool is_eliminated = false;    ///< by the last adjustment
+    bool is_rejected = false;      ///< by the last adjustment
   };
+  /// One track.
   struct Person {
     std::map<FrameId, std::map<int, Joint>> sightings;  // of the frames in memory
     SegmentLengths lengths;                             // from all frames
-    SegmentLengths lengths_before_window;               // from those no more in memory
+    SegmentLengths lengths_before_window;               // from frames that have left memory
     FrameId last_seen;
   };
 

@@ -11,22 +11,22 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kSmallestRatio = 0.45;
 constexpr double kLargestRatio = 1.7;
-constexpr double kPriorSigma = 0.25;    // of the logarithm of a grown person's length
-constexpr double kIndependence = 0.3;   // what a frame tells beyond the one before
-constexpr double kOutlierShare = 0.05;  // joints that are somewhere else
-constexpr double kOutlierSizeM = 1.0;   // and how far they may be off
-constexpr double kNothing = 1e-12;      // a density that nothing falls below: no log(0)
-constexpr double kBodyDepthM = 0.2;     // standard deviation of joints' depths in a body
-constexpr double kLeastAlongM = 0.03;   // no finer than the steps of the directions
-constexpr double kLeastAcrossM = 0.01;  // a keypoint is no anatomical joint
+constexpr double kPriorSigma = 0.25;    // of the logarithm of an adult's length
+constexpr double kIndependence = 0.3;   // the share of a frame's information that is new
+constexpr double kOutlierShare = 0.05;  // share of joints that are misplaced
+constexpr double kOutlierSizeM = 1.0;   // how far those may be off
+constexpr double kNothing = 1e-12;      // lower bound of a density: avoids log(0)
+constexpr double kBodyDepthM = 0.2;     // standard deviation of joint depths within a body
+constexpr double kLeastAlongM = 0.03;   // no finer than the grid of directions resolves
+constexpr double kLeastAcrossM = 0.01;  // a keypoint is not an anatomical joint
 constexpr int kNumDirections = 20;
 
-/// Mirror images share one belief: that of the right side.
+/// Mirrored segments share one belief, stored under the first of the two.
 constexpr std::array<std::size_t, kNumSegments> kMirror = {0, 0, 2, 2,  4, 5,  6,
                                                            5, 6, 9, 10, 9, 10, 13};
 
-/// The exponents of the direction's density among which the frames choose. Shoulders and hips lie
-/// level and turn with the person.
+/// Candidate exponents of the direction's density, among which the frames choose. Shoulders and
+/// hips are level and turn with the person.
 constexpr std::array<double, SegmentLengths::kNumSpreads> kUpright = {1, 5, 25};
 constexpr std::array<double, SegmentLengths::kNumSpreads> kLevel = {0, 0, 0};
 
@@ -39,8 +39,8 @@ double Normal(double error, double sigma) {
   return std::exp(-0.5 * error * error / (sigma * sigma)) / (sigma * std::sqrt(2 * kPi));
 }
 
-/// The middle of the joints' inverse depths, 1/m: noise of a disparity makes these wrong to both
-/// sides alike, but depths more often too large.
+/// Median of the joints' inverse depths, 1/m. Disparity noise affects inverse depths symmetrically,
+/// whereas depths come out too large more often than too small.
 double MiddleInverseDepth(const std::map<int, MeasuredJoint>& joints) {
   std::vector<double> inverse_depths;
   for (const auto& [joint, measured] : joints) inverse_depths.push_back(1 / measured.p_C.z());
@@ -49,22 +49,22 @@ double MiddleInverseDepth(const std::map<int, MeasuredJoint>& joints) {
   return 0.5 * (inverse_depths[(n - 1) / 2] + inverse_depths[n / 2]);
 }
 
-/// The joint's inverse depth; where it is badly measured, the person's.
+/// The joint's inverse depth, or the person's where the joint's is poorly measured.
 double InverseDepthOf(const MeasuredJoint& joint, double of_person) {
   const double variance = joint.covariance_C(2, 2);
   const double weight = kBodyDepthM * kBodyDepthM / (kBodyDepthM * kBodyDepthM + variance);
   return weight / joint.p_C.z() + (1 - weight) * of_person;
 }
 
-/// Sum of the variances of the two directions across the joint's ray, m^2.
+/// Sum of the variances in the two directions across the joint's ray, m^2.
 double VarianceAcross(const MeasuredJoint& joint) {
   const Eigen::Vector3d ray = joint.p_C.normalized();
   return joint.covariance_C.trace() - ray.dot(joint.covariance_C * ray);
 }
 
-/// What a frame says about a segment.
+/// One frame's measurement of a segment.
 struct Measurement {
-  double along_m = 0;  ///< the ray
+  double along_m = 0;  ///< component along the ray
   double sigma_along_m = 0;
   double across_m = 0;
   double sigma_across_m = 0;
@@ -74,7 +74,7 @@ using Weights = std::array<double, kNumDirections>;
 
 double Angle(std::size_t i) { return kPi * (static_cast<double>(i) + 0.5) / kNumDirections; }
 
-/// The density of the angle to the ray, at Angle(i), with sum 1.
+/// The density of the angle to the ray, sampled at Angle(i) and normalised to sum 1.
 Weights DirectionWeights(double exponent) {
   Weights weights;
   double sum = 0;
@@ -86,7 +86,7 @@ Weights DirectionWeights(double exponent) {
   return weights;
 }
 
-/// The integrand of the header without q, at Angle(i).
+/// The integrand in the header without q, at Angle(i).
 Weights FitOfDirections(const Measurement& seen, double length_m) {
   Weights fit;
   const double scale = 1 / (2 * kPi * seen.sigma_across_m * seen.sigma_along_m);
@@ -118,7 +118,7 @@ void SegmentLengths::Add(const std::map<int, MeasuredJoint>& joints) {
 
 void SegmentLengths::AddSegment(std::size_t segment, const MeasuredJoint& a, const MeasuredJoint& b,
                                 double inverse_depth) {
-  // Across the ray: both directions at one depth; along it: the measured difference.
+  // Across the ray: both joints at a common depth. Along the ray: the measured difference.
   const double common_depth_m =
       2 / (InverseDepthOf(a, inverse_depth) + InverseDepthOf(b, inverse_depth));
   const Eigen::Vector3d ray_a = a.p_C / a.p_C.z();
@@ -130,7 +130,7 @@ void SegmentLengths::AddSegment(std::size_t segment, const MeasuredJoint& a, con
   seen.along_m = ray.dot(a.p_C - b.p_C);
   seen.sigma_along_m = std::sqrt(ray.dot(covariance * ray));
   seen.sigma_across_m = std::sqrt(0.5 * (VarianceAcross(a) + VarianceAcross(b)));
-  // Noise square to the segment in the image makes it longer: E[l^2] has one variance more.
+  // Image noise perpendicular to the segment lengthens it: E[l^2] is larger by one variance.
   const double across_m2 = (offset - ray * ray.dot(offset)).squaredNorm();
   seen.across_m = std::sqrt(std::max(across_m2 - seen.sigma_across_m * seen.sigma_across_m, 0.0));
   seen.sigma_along_m = std::hypot(seen.sigma_along_m, kLeastAlongM);

@@ -17,7 +17,7 @@ int CountNewest(const BundleProblem& problem) {
   const int newest = static_cast<int>(problem.frames.size()) - 1;
   return static_cast<int>(
       std::count_if(problem.observations.begin(), problem.observations.end(),
-                    [newest](const auto& o) { return o.frame == newest && !o.is_eliminated; }));
+                    [newest](const auto& o) { return o.frame == newest && !o.is_rejected; }));
 }
 
 HumanTracksOptions PeopleOptions(const SlidingWindowOptions& options) {
@@ -42,7 +42,7 @@ BundleSummary Combine(const BundleSummary& without_people, const BundleSummary& 
                       bool trusts_people) {
   BundleSummary summary = with_people;
   summary.num_iterations += without_people.num_iterations;
-  summary.num_reprojection_eliminated += without_people.num_reprojection_eliminated;
+  summary.num_reprojection_rejected += without_people.num_reprojection_rejected;
   if (trusts_people) return summary;
   summary.has_converged = without_people.has_converged;
   summary.initial_cost = without_people.initial_cost;
@@ -97,10 +97,10 @@ std::vector<LandmarkId> SlidingWindowOptimizer::Adjust(const Prediction& predict
   estimate->covariance = summary.newest_covariance.value_or(UnobservedCovariance());
   estimate->num_static_landmarks = static_cast<int>(without_people.landmarks.size());
   estimate->num_static_observations = CountNewest(without_people);
-  const Se3 T_W_C_adjusted = without_people.frames.back().T_W_C;  // what the covariance is about
+  const Se3 T_W_C_adjusted = without_people.frames.back().T_W_C;  // the covariance is about it
   bool is_predicted = estimate->num_static_observations == 0;
   if (is_predicted) {
-    // Only the smoothness of the camera placed this frame; the front end's guess knows more.
+    // Only the camera's smoothness placed this frame; the frontend's prediction knows more.
     const Se3 T_W_Cbase =
         FindPose(without_people, prediction.base).value_or(PoseOf(prediction.base));
     without_people.frames.back().T_W_C = T_W_Cbase * prediction.T_Cbase_C;
@@ -136,7 +136,7 @@ BundleProblem SlidingWindowOptimizer::ProblemWithPeople(const BundleProblem& wit
   BundleProblem problem = without_people;
   problem.humans.clear();
   if (!options_.bundle.use_people) return problem;
-  // Where the static scene is strong people are not believed anyway, and need not move its points.
+  // Where the static scene is strong, people are not believed anyway and must not move its points.
   for (BundleProblem::Landmark& landmark : problem.landmarks) landmark.is_fixed = is_static_strong;
   for (BundleProblem::Frame& frame : problem.frames) {
     if (frame.id < people_.frames().front()) frame.is_fixed = true;
@@ -149,7 +149,7 @@ BundleProblem SlidingWindowOptimizer::ProblemWithPeople(const BundleProblem& wit
 void SlidingWindowOptimizer::LearnTrackNoise(const Matrix6d& camera_covariance,
                                              BundleProblem* problem) const {
   TrackNoiseOptions noise;
-  // From a camera that does not know where it is nobody's steps can be told: the prior stays.
+  // A camera that does not know where it is cannot measure anybody's steps: the prior stays.
   const double sigma_m = std::sqrt(camera_covariance.topLeftCorner<3, 3>().trace() / 3);
   noise.camera_sigma_m = std::clamp(sigma_m, noise.camera_sigma_m, kUnobservedSigma);
   noise.prior.motion_sigma_m = options_.bundle.motion_sigma_m;
@@ -204,7 +204,8 @@ void SlidingWindowOptimizer::LearnCarrier(const FrameInput& input) {
   const double step_s = input.time_s - trajectory_.back().time_s;
   if (!(step_s > 0)) return;
   if (trajectory_.size() >= 2) {
-    // Over a jump of the clock the front end took a step as before: its sigma is not of this step.
+    // When the clock jumped, the frontend predicted an ordinary step: its sigma does not apply to
+    // this one.
     const double last_step_s =
         trajectory_.back().time_s - trajectory_[trajectory_.size() - 2].time_s;
     if (last_step_s > 0 && step_s >= 10 * last_step_s) return;

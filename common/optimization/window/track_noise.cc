@@ -19,14 +19,14 @@ struct MeasuredPoint {
   Eigen::Matrix3d covariance_W;
 };
 
-/// The body points that one frame shows.
+/// The body points seen in one frame.
 struct Sighting {
   int frame = 0;
   double time_s = 0;
   std::map<int, MeasuredPoint> points;
 };
 
-/// The point as it was measured, in W; nothing where it has no depth.
+/// The point as measured, in W; nothing if it has no depth.
 std::optional<MeasuredPoint> Measured(const BundleProblem& problem,
                                       const BundleProblem::JointState& joint) {
   const Se3& T_W_C = problem.frames[static_cast<std::size_t>(joint.frame)].T_W_C;
@@ -47,7 +47,7 @@ std::vector<Sighting> BodySightings(const BundleProblem& problem,
   const std::vector<int>& body = human.model->body_points;
   std::map<int, Sighting> by_frame;
   for (const BundleProblem::JointState& joint : human.joints) {
-    if (joint.is_eliminated || std::count(body.begin(), body.end(), joint.joint) == 0) continue;
+    if (joint.is_rejected || std::count(body.begin(), body.end(), joint.joint) == 0) continue;
     const auto point = Measured(problem, joint);
     if (!point) continue;
     Sighting& sighting = by_frame[joint.frame];
@@ -60,7 +60,7 @@ std::vector<Sighting> BodySightings(const BundleProblem& problem,
   return sightings;
 }
 
-/// The rotation that takes the points `before` to `after`, both about their mean.
+/// The rotation that maps the points `before` to `after`, each set about its mean.
 Eigen::Matrix3d TurnBetween(const std::vector<Eigen::Vector3d>& before,
                             const std::vector<Eigen::Vector3d>& after) {
   Eigen::Matrix3Xd a(3, static_cast<Eigen::Index>(before.size())), b = a;
@@ -77,7 +77,7 @@ double LogDensity(const Eigen::Vector3d& error, const Eigen::Matrix3d& S, double
   return -0.5 * (chi2 + std::log(std::max(S.determinant(), 1e-60)));
 }
 
-/// Posterior mean of log sigma over a grid, given the log likelihood.
+/// Posterior mean of log sigma over a grid, given the log likelihood; returns its exponential.
 double PosteriorMean(double prior, double prior_log_sigma, double least, double largest,
                      const std::function<double(double)>& log_likelihood) {
   constexpr int kSteps = 24;
@@ -98,11 +98,11 @@ double PosteriorMean(double prior, double prior_log_sigma, double least, double 
   return std::exp(sum / weights);
 }
 
-/// How a point's step differs from the mean step of the body, for all pairs.
+/// How each point's step deviates from the body's mean step, over all pairs of frames.
 struct Scatter {
   std::vector<Eigen::Vector3d> errors;
-  std::vector<Eigen::Matrix3d> covariances;  // of the measurements alone
-  std::vector<double> shares;                // of a point's own variance that the mean leaves
+  std::vector<Eigen::Matrix3d> covariances;  // of the measurements only
+  std::vector<double> shares;  // of a point's variance left after subtracting the mean
 };
 
 Scatter ScatterAboutBody(const std::vector<Sighting>& sightings, const std::set<int>& breaks,
@@ -136,8 +136,8 @@ Scatter ScatterAboutBody(const std::vector<Sighting>& sightings, const std::set<
   return scatter;
 }
 
-/// The body's centre at each sighting, as if always the same points were seen: each point stands
-/// for the centre at its mean offset from it.
+/// The body's centre at each sighting, as if the same points were always seen: each point stands
+/// for the centre through its mean offset from it.
 struct Centre {
   int frame = 0;
   double time_s = 0;
@@ -145,15 +145,14 @@ struct Centre {
   Eigen::Matrix3d covariance_W;
 };
 
-/// Where each point lies from the centre of the body, in the mean over the sightings that show
-/// most.
+/// Mean offset of each point from the body's centre, over the sightings with the most points.
 std::map<int, Eigen::Vector3d> Offsets(const std::vector<Sighting>& sightings) {
   std::size_t most = 0;
   for (const Sighting& sighting : sightings) most = std::max(most, sighting.points.size());
   std::map<int, Eigen::Vector3d> sums;
   std::map<int, int> counts;
   for (const Sighting& sighting : sightings) {
-    if (sighting.points.size() < most) continue;  // the middle of a part is another point
+    if (sighting.points.size() < most) continue;  // the centre of fewer points is another point
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const auto& [index, point] : sighting.points) mean += point.p_W;
     mean /= static_cast<double>(most);
@@ -187,7 +186,7 @@ std::vector<Centre> Centres(const std::vector<Sighting>& sightings, double camer
   return centres;
 }
 
-/// A filter of constant velocity on a body's centre.
+/// Constant-velocity filter of a body's centre.
 class CentreFilter {
  public:
   void Start(const Centre& centre) {
@@ -198,7 +197,7 @@ class CentreFilter {
     P_.bottomRightCorner<3, 3>().diagonal().setConstant(kStartSigma_m_s * kStartSigma_m_s);
   }
 
-  /// While the velocity changes by sigma_m_s2 * step_s and the centre strays by step_sigma_m.
+  /// The velocity changes by sigma_m_s2 * step_s and the centre strays by step_sigma_m.
   void Predict(double step_s, double sigma_m_s2, double step_sigma_m) {
     Matrix6d F = Matrix6d::Identity();
     F.topRightCorner<3, 3>().diagonal().setConstant(step_s);
@@ -228,7 +227,7 @@ class CentreFilter {
 };
 
 constexpr double kMaxGap_s = 0.5;
-constexpr double kGap = 1.5;  // usual steps: longer ones are gaps
+constexpr double kGap = 1.5;  // in usual steps: a longer step is a gap
 
 double CentreLogLikelihood(const std::vector<Centre>& centres, const std::set<int>& breaks,
                            double step_sigma_m, double sigma_m_s2, double largest_chi2) {
@@ -266,7 +265,7 @@ MotionNoise EstimateMotionNoise(const TrackNoiseOptions& options, const BundlePr
           const Eigen::Matrix3d S =
               scatter.shares[i] *
               (scatter.covariances[i] + sigma_m * sigma_m * Eigen::Matrix3d::Identity());
-          // A point's step shares its ends with the next steps; half of them are independent.
+          // Consecutive steps of a point share an end, so only half of them are independent.
           sum += 0.5 * LogDensity(scatter.errors[i], S, options.largest_chi2);
         }
         return sum;
@@ -296,7 +295,7 @@ std::set<int> FindTrackBreaks(const TrackBreakOptions& options, const BundleProb
   for (std::size_t i = 0; i < centres.size(); ++i) {
     const double step_s = i > 0 ? centres[i].time_s - centres[i - 1].time_s : 0;
     if (i > 0 && step_s <= kMaxGap_s) {
-      // Changes of velocity add up like a random walk over a gap.
+      // Over a gap, changes of velocity add up like a random walk.
       filter.Predict(step_s, options.acceleration_m_s2 * std::sqrt(usual_step_s / step_s), 0);
       const Eigen::Vector3d innovation = filter.Innovation(centres[i]);
       const Eigen::Matrix3d S = filter.InnovationCovariance(centres[i]);
@@ -306,7 +305,8 @@ std::set<int> FindTrackBreaks(const TrackBreakOptions& options, const BundleProb
         continue;
       }
       breaks.insert(centres[i].frame);
-      // Just after a gap it may have been there already, with the filter too unsure to see it.
+      // Right after a gap, the switch may have happened in it, with the filter too uncertain to
+      // notice.
       if (step_before_s > kGap * usual_step_s) breaks.insert(centres[i - 1].frame);
     }
     filter.Start(centres[i]);

@@ -7,43 +7,46 @@
 
 namespace airdos {
 
+/// Settings of EstimateMotionNoise().
 struct TrackNoiseOptions {
-  /// What a track is taken for as long as it says nothing itself, and how far tracks differ from
-  /// it: the sigma of the logarithm of each value.
+  /// The noise assumed for a track until it provides evidence itself, and how far tracks differ
+  /// from it: the sigma of the logarithm of each value.
   MotionNoise prior{0.03, 3.0, 1.0};
   double prior_log_sigma = 1.0;
-  /// Uncertainty of the camera from frame to frame that the track is seen from: standard deviation
-  /// of the track's centre, per axis. At 0 what the camera errs counts as the person's doing, which
-  /// is the safe side: a value too large has people pass for steadier than they are.
+  /// Frame-to-frame uncertainty of the camera that sees the track: standard deviation of the
+  /// track's centre per axis. At 0, errors of the camera are attributed to the person, which is the
+  /// safe side; too large a value makes people appear steadier than they are.
   double camera_sigma_m = 0;
-  /// Bounds of what is believed.
+  /// Limits of the result.
   MotionNoise least{0.01, 0.1, 0.1};
   MotionNoise largest{0.3, 20.0, 20.0};
-  /// Squared whitened errors beyond this count as this: one wrong joint must not speak for a track.
+  /// Limit of a squared whitened error: one wrong joint must not decide the result for a track.
   double largest_chi2 = 25;
 };
 
-/// The process noise of one track, learnt from how it moved: the scatter of its points about the
-/// body's motion, and the accelerations of the body's centre. Both are maxima of the posterior
+/// Estimates the process noise of one track from how it moved: the scatter of its points about the
+/// body's motion, and the accelerations of the body's centre. Both maximise the posterior
 ///
 ///   p(sigma) ~ prod_k N(innovation_k; 0, S_k(sigma)) * N(log sigma; log prior, prior_log_sigma)
 ///
-/// (its mean over a grid of log sigma, rather), so that a short or distant track keeps the prior.
-/// Innovations are those of a filter of constant velocity on the centre of the body points, which
-/// knows what each measurement is worth. Points are taken as measured, from the poses in `problem`:
-/// call it after an adjustment. A person too short to say anything gets the prior.
+/// (more precisely: are its mean over a grid of log sigma), so a short or distant track keeps the
+/// prior. The innovations are those of a constant-velocity filter of the centre of the body points,
+/// which accounts for the covariance of each measurement. Points are taken as measured, from the
+/// poses in `problem`: call it after an adjustment. A track that is too short to be informative
+/// gets the prior.
 MotionNoise EstimateMotionNoise(const TrackNoiseOptions& options, const BundleProblem& problem,
                                 const BundleProblem::Human& human);
 
+/// Settings of FindTrackBreaks().
 struct TrackBreakOptions {
-  double acceleration_m_s2 = 6;  ///< that nobody exceeds for long: sigma of the filter
+  double acceleration_m_s2 = 6;  ///< sigma of the filter; nobody exceeds it for long
   double camera_sigma_m = 0.1;   ///< of the poses from frame to frame, at the person
   double largest_chi2 = 30;      ///< of the centre's innovation, 3 degrees of freedom
 };
 
-/// The frames at which a track jumps further than any person can: there two people were mistaken
-/// for each other. From the points as measured and the poses in `problem`, which may be start
-/// values. The filter starts anew at each such frame. Gaps do not count; they say nothing.
+/// The frames at which a track jumps further than any person can: two people were mistaken for each
+/// other there. Uses the points as measured and the poses in `problem`, which may be initial
+/// values. The filter restarts at each such frame. A gap in the track is not evidence of a jump.
 std::set<int> FindTrackBreaks(const TrackBreakOptions& options, const BundleProblem& problem,
                               const BundleProblem::Human& human);
 

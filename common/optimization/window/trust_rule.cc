@@ -10,7 +10,7 @@ bool TrustsPeople(const TrustOptions& options, int num_static_observations,
   if (num_static_observations >= options.min_static_observations) return false;
   const int num_motion = with_people.num_motion;
   if (num_motion < options.min_motion_factors ||
-      with_people.num_motion_eliminated > options.max_eliminated_share * num_motion) {
+      with_people.num_motion_rejected > options.max_rejected_share * num_motion) {
     return false;
   }
   if (!without_people.newest_covariance || !with_people.newest_covariance) return false;

@@ -8,7 +8,7 @@
 namespace airdos {
 namespace {
 
-// The front end learns of a removed landmark a few frames later and goes on observing it until
+// The frontend learns about a removed landmark a few frames later and keeps observing it until
 // then.
 constexpr int kIgnoreRemovedFrames = 50;
 constexpr double kFarthest_m = 1e5;
@@ -41,7 +41,7 @@ void WindowMap::AddObservation(const StereoCamera& camera, FrameId id,
     return;
   }
   Landmark& landmark = landmarks_[feature.id];
-  // No kept frame sees it any more: its old position hangs on nothing, the new measurement is
+  // No kept frame sees it any more, so nothing holds its old position: the new measurement is
   // better.
   if (landmark.frames.empty()) landmark.p_W.reset();
   landmark.frames.insert(id);
@@ -107,7 +107,7 @@ std::vector<FrameId> WindowMap::ChooseFixedFrames() const {
   for (const FrameId id : window_) {
     for (const auto& [landmark, observation] : frames_.at(id).observations) seen.insert(landmark);
   }
-  std::vector<std::pair<int, FrameId>> ranked;  // minus the number shared, so that most come first
+  std::vector<std::pair<int, FrameId>> ranked;  // minus the number shared: most shared first
   for (const FrameId id : key_frames_) {
     int num_shared = 0;
     for (const auto& [landmark, observation] : frames_.at(id).observations) {
@@ -179,8 +179,8 @@ std::vector<LandmarkId> WindowMap::Absorb(const BundleProblem& problem) {
     const LandmarkId id = problem.landmarks[static_cast<std::size_t>(result.landmark)].id;
     Frame& frame = frames_.at(frame_id);
     Observation& observation = frame.observations.at(id);
-    observation.num_eliminations = result.is_eliminated ? observation.num_eliminations + 1 : 0;
-    if (observation.num_eliminations < options_.max_eliminations) continue;
+    observation.num_rejections = result.is_rejected ? observation.num_rejections + 1 : 0;
+    if (observation.num_rejections < options_.max_rejections) continue;
     frame.observations.erase(id);
     landmarks_.at(id).frames.erase(frame_id);
     ++landmarks_.at(id).num_dropped;

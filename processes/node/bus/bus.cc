@@ -35,8 +35,8 @@ std::vector<Envelope> Bus::Work(Member* member, const std::function<void()>& wor
   return output;
 }
 
-// Follows the channels upstream: a node that has frames waits for what these lack, one that has
-// none waits for any of its inputs.
+// Follows the channels upstream: a node that has frames waits for the inputs that these lack; a
+// node without frames waits for any of its inputs.
 bool Bus::WaitsForAnother(const Member& member) const {
   std::istringstream lacking(member.node->waiting_for());
   std::vector<std::string> channels(std::istream_iterator<std::string>(lacking), {});

@@ -10,14 +10,14 @@
 
 namespace airdos {
 
-/// Runs nodes in one process without LCM: a message goes to the observers and to every node that
-/// subscribed, and so does what the nodes publish. Which messages the observers see, and in which
-/// order, depends on what is published only, and is the same for every kind of bus.
+/// Runs nodes in one process without LCM: a message goes to the observers and to every subscribed
+/// node, and so does whatever the nodes publish. Which messages the observers see, and in which
+/// order, depends only on what is published and is the same for every kind of bus.
 class Bus {
  public:
   using Observer = std::function<void(const Envelope&)>;
-  /// Told before and after each piece of work of a node, on the thread that does it, for whoever
-  /// measures time.
+  /// Notified before and after each piece of work of a node, on the thread that does it, for
+  /// measuring time.
   class WorkObserver {
    public:
     virtual ~WorkObserver() = default;
@@ -30,24 +30,25 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  /// The node is not owned and outlives the bus. `publishes` names its output channels.
+  /// The node is not owned and must outlive the bus. `publishes` names its output channels.
   void AddNode(Node* node, const std::vector<std::string>& publishes = {});
-  /// Sees every message, in the order in which they travel, on the thread that publishes.
+  /// The observer sees every message, in the order in which they travel, on the publishing thread.
   void AddObserver(Observer observer) { observers_.push_back(std::move(observer)); }
   void SetWorkObserver(WorkObserver* observer) { work_observer_ = observer; }
 
-  /// Publishes the messages of one frame in this order. What they cause may go on when this
-  /// returns. Throws what a node or an observer throws; the bus is of no use then.
+  /// Publishes the messages of one frame in this order. Their consequences may continue after this
+  /// returns. Throws what a node or an observer throws; the bus is then unusable.
   virtual void PublishFrame(std::vector<Envelope> frame) = 0;
-  /// Returns when all that was published has had its effect.
+  /// Returns once everything published has had its effect.
   virtual void Settle() = 0;
-  /// No more input will come: has frames completed that still wait for some, one at a time, until
-  /// nothing waits. First come nodes that wait for nothing another waiting node could still cause,
-  /// of several the first by name; so what channels carry does not depend on the order in which
-  /// nodes were added.
+  /// Call this when there is no more input. Completes the frames that still wait for some, one at a
+  /// time, until nothing waits. Nodes that wait for nothing that another waiting node could still
+  /// cause come first, in order of name, so the result does not depend on the order in which nodes
+  /// were added.
   virtual void Finish() = 0;
 
  protected:
+  /// A node with its channels.
   struct Member {
     Node* node;
     std::vector<std::string> inputs;
@@ -57,7 +58,7 @@ class Bus {
   std::vector<Member>& members() { return members_; }
   const std::vector<Member>& members() const { return members_; }
   void Observe(const Envelope& message) const;
-  /// Has the node work and gives what it published.
+  /// Lets the node work and returns what it published.
   std::vector<Envelope> Work(Member* member, const std::function<void()>& work) const;
   /// The node whose oldest frame is to be completed next at the end of the input, if any.
   Member* NextToComplete();

@@ -8,12 +8,12 @@
 
 namespace airdos {
 
-/// A bus of one thread: what the nodes publish queues behind the message that caused it. No clock:
-/// the same messages in the same order give the same traffic. Finish() needs the output channels of
-/// the nodes (those on which one published already are known without).
+/// A single-threaded bus: what the nodes publish is queued after the message that caused it. It has
+/// no clock: the same messages in the same order cause the same traffic. Finish() needs to know the
+/// nodes' output channels (those on which a node has already published are known anyway).
 class FifoBus : public Bus {
  public:
-  /// Publishes one message and works until all nodes are quiet.
+  /// Publishes one message and runs until all nodes are idle.
   void Publish(Envelope message);
 
   void PublishFrame(std::vector<Envelope> frame) override;

@@ -33,7 +33,7 @@ ParallelBus::~ParallelBus() {
   }
 }
 
-// Whether what the first node publishes can make the second one publish.
+// Whether what the first node publishes can cause the second one to publish.
 std::vector<std::vector<bool>> ParallelBus::Reachable(bool without_feedback) const {
   const std::size_t size = members().size();
   std::vector<std::vector<bool>> reaches(size, std::vector<bool>(size, false));
@@ -55,8 +55,8 @@ std::vector<std::vector<bool>> ParallelBus::Reachable(bool without_feedback) con
   return reaches;
 }
 
-// Of the channels of a circle, those that make up frames go forward: what a frame is made of cannot
-// wait for the frame itself.
+// Of the channels in a cycle, those that make up frames count as forward: the inputs of a frame
+// cannot wait for the frame itself.
 void ParallelBus::FindFeedback() {
   const auto reaches = Reachable(false);
   for (std::size_t to = 0; to < members().size(); ++to) {
@@ -89,7 +89,7 @@ void ParallelBus::Start() {
   FindFeedback();
   has_threads_ = !HasCircle();
   is_serial_ = !has_threads_;
-  if (!has_threads_) {  // nobody waits for anybody where one thread does all
+  if (!has_threads_) {  // a single thread never waits for another node
     for (const auto& worker : workers_) worker->predecessors.clear();
     return;
   }
@@ -97,7 +97,7 @@ void ParallelBus::Start() {
     workers_[i]->thread = std::thread([this, i] { RunWorker(i); });
 }
 
-// Whatever the node takes in from now on and may publish something after, stands here or later.
+// Lower bound for the place of anything that the node may still take in and publish after.
 SerialPlace ParallelBus::Bound(std::size_t worker) const {
   const Worker& self = *workers_[worker];
   if (self.is_busy || !self.awaited.empty()) return self.now;
@@ -108,7 +108,7 @@ SerialPlace ParallelBus::Bound(std::size_t worker) const {
   return std::max(bound, self.now);
 }
 
-// What the node publishes next stands here or later.
+// Lower bound for the place of what the node publishes next.
 SerialPlace ParallelBus::NextOutput(std::size_t worker) const {
   const SerialPlace bound = Bound(worker);
   const Worker& self = *workers_[worker];
@@ -195,7 +195,7 @@ void ParallelBus::WorkAndPost(std::size_t worker, const std::function<void()>& w
   lock->unlock();
   std::vector<Envelope> output = Work(&member, work);
   lock->lock();
-  AIRDOS_CHECK(member.outputs.size() == num_declared);  // or nobody knew to wait for it
+  AIRDOS_CHECK(member.outputs.size() == num_declared);  // otherwise nobody knew to wait for it
   Worker& self = *workers_[worker];
   for (Envelope& message : output)
     Post(self.now.Then({worker, self.num_published++}), std::move(message));
@@ -223,7 +223,7 @@ void ParallelBus::Deliver(std::size_t worker, const Letter& letter, Lock* lock) 
   self.awaited = {std::istream_iterator<std::string>(lacking), {}};
   if (!std::includes(self.feedback.begin(), self.feedback.end(), self.awaited.begin(),
                      self.awaited.end())) {
-    self.awaited.clear();  // something that comes forward is lacking as well
+    self.awaited.clear();  // a forward input is missing as well
   }
   self.num_pending = node->num_pending();
   self.is_busy = false;
@@ -275,7 +275,7 @@ void ParallelBus::WaitUntil(const std::function<bool()>& condition, Lock* lock) 
   }
 }
 
-// Each of the remaining messages to each of its nodes, in FifoBus's order.
+// Delivers each remaining message to each of its nodes, in FifoBus's order.
 void ParallelBus::DeliverRest(Lock* lock) {
   is_calling_thread_at_work_ = true;
   for (;;) {
@@ -297,7 +297,7 @@ void ParallelBus::DeliverRest(Lock* lock) {
     queue->erase(first);
     Deliver(worker, letter, lock);
   }
-  for (const auto& worker : workers_) {  // nothing more can follow what was there before
+  for (const auto& worker : workers_) {  // nothing can follow the earlier messages any more
     worker->now = {num_inputs_, {}};
     worker->num_published = 0;
   }

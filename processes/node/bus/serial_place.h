@@ -7,14 +7,15 @@
 
 namespace airdos {
 
-/// Where a message stands in the order in which FifoBus carries messages: behind everything that
-/// earlier inputs caused; among what one input caused, nearer causes first (breadth first), then in
-/// the order of the causes, then of the nodes, then of what one node published. Known to whoever
-/// knows the message's cause, without running the others.
+/// A message's place in the order in which FifoBus carries messages: after everything that earlier
+/// inputs caused; among the consequences of one input, by causal distance (breadth first), then in
+/// the order of the causes, then of the nodes, then in the order in which one node published. It
+/// can be computed from the place of the message's cause, without running the other nodes.
 struct SerialPlace {
+  /// One causal step: a message that makes a node publish another.
   struct Step {
     std::size_t member = 0;   ///< the node that published
-    std::int64_t number = 0;  ///< of what it published because of the same message
+    std::int64_t number = 0;  ///< index among what it published because of this message
     friend bool operator<(const Step& a, const Step& b) {
       return std::tie(a.member, a.number) < std::tie(b.member, b.number);
     }
@@ -23,10 +24,10 @@ struct SerialPlace {
     }
   };
 
-  std::int64_t input = 0;  ///< number of the input that it all began with
-  std::vector<Step> path;  ///< from the input to the message
+  std::int64_t input = 0;  ///< number of the input that started it all
+  std::vector<Step> path;  ///< causal steps from the input to the message
 
-  /// Of what `step` publishes because of the message in this place.
+  /// The place of what `step` publishes because of the message at this place.
   SerialPlace Then(const Step& step) const {
     SerialPlace place = *this;
     place.path.push_back(step);

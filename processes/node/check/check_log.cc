@@ -21,10 +21,10 @@
 namespace airdos {
 namespace {
 
-// Read before a run starts: a second of a slow disk, some minutes of most recordings.
+// Read before a run starts: takes a second on a slow disk and covers minutes of most recordings.
 constexpr std::int64_t kQuickBytes = std::int64_t{200} << 20;
 
-/// A sound message of this type, or nothing: LogSurvey has said why.
+/// The message, if it is valid and of this type; if not, LogSurvey has reported why.
 template <class Message>
 std::optional<Message> DecodeSound(const LogEvent& event) {
   Message message;
@@ -33,7 +33,8 @@ std::optional<Message> DecodeSound(const LogEvent& event) {
   return message;
 }
 
-/// Whether the file within has another size than the message says, or none: LogSizes has said so.
+/// Whether the embedded file has a size other than the message states, or none: LogSizes has
+/// reported it.
 template <class Message>
 bool ContradictsItself(const Message& message) {
   if constexpr (std::is_same_v<Message, image_t>) {
@@ -65,7 +66,7 @@ class LogInput : public CheckedInput {
   std::string where_camera() const override { return path_ + ": CALIBRATION"; }
   const std::vector<std::int64_t>& utimes() const override { return survey_->utimes(); }
   std::string where_times() const override { return path_ + ": CAMERA_LEFT"; }
-  void ReportTimes(FindingList*) const override {}  // LogSurvey has: utime may be anything
+  void ReportTimes(FindingList*) const override {}  // done by LogSurvey: utime may have any origin
   const std::vector<std::optional<Se3>>& ground_truth() const override {
     return survey_->ground_truth();
   }
@@ -139,7 +140,7 @@ class LogInput : public CheckedInput {
     }
   }
 
-  // LogSizes has said where it is not.
+  // If not, LogSizes has reported it.
   bool HasCameraSize(const cv::Mat& picture) const {
     return picture.cols == camera_.width && picture.rows == camera_.height;
   }
@@ -149,7 +150,7 @@ class LogInput : public CheckedInput {
   StereoCamera camera_;
 };
 
-/// Keypoints of all images, and how the images were compressed.
+/// Checks the keypoints of all images, and how strongly the images were compressed.
 void CheckContents(const std::string& path, const StereoCamera& camera, FindingList* findings) {
   std::map<std::string, KeypointCheck> keypoints;
   std::map<std::string, JpegCheck> images;

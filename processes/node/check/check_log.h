@@ -7,14 +7,14 @@
 
 namespace airdos {
 
-/// Kind of the finding that bytes of a log are damaged.
+/// Kind of the finding for damaged bytes in a log.
 inline constexpr char kLogDamagedKind[] = "log.damaged";
 
-/// Checks the input channels of an event log: that every message decodes and makes sense, is small
-/// enough to travel, comes in order and without gaps, that each image has its partners (LogPairing)
-/// and a calibration before it, that sizes and capture times are possible, and then what it shows
-/// as CheckFolder() does. The quick look is one reading of at most the first 200 MB that decodes no
-/// image. Throws InputError where the file is no log.
+/// Checks the input channels of an event log: that every message decodes and is valid, is small
+/// enough to travel, and is in order and without gaps; that each image has its partners
+/// (LogPairing) and is preceded by a calibration; that sizes and capture times are plausible; and
+/// then the contents, like CheckFolder(). The quick check reads at most the first 200 MB, once, and
+/// decodes no images. Throws InputError if the file is not a log.
 void CheckLog(const std::string& path, const CheckOptions& options, FindingList* findings);
 
 }  // namespace airdos

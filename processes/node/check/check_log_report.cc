@@ -1,4 +1,4 @@
-// What LogSurvey says of what it saw.
+// The report of LogSurvey.
 #include <algorithm>
 
 #include "common/check/check_stereo.h"
@@ -14,7 +14,7 @@ constexpr std::size_t kMaxSessionsListed = 5;
 
 std::string Megabytes(std::int64_t num_bytes) { return std::to_string(num_bytes >> 20) + " MB"; }
 
-/// "; so 12 of 50 messages", where there is more than one.
+/// "; so 12 of 50 messages", if there is more than one.
 std::string AndMore(std::int64_t num, std::int64_t all) {
   return num == 1 ? "" : "; so " + std::to_string(num) + " of " + std::to_string(all) + " messages";
 }
@@ -41,8 +41,8 @@ void LogSurvey::Report(FindingList* findings) const {
 void LogSurvey::ReportExtent(FindingList* findings) const {
   if (is_cut_) {
     findings->Note("log.extent", path_,
-                   "looked at the first " + Megabytes(num_bytes_read_) + " of " +
-                       Megabytes(num_bytes_) + "; airdos-check looks at all");
+                   "checked the first " + Megabytes(num_bytes_read_) + " of " +
+                       Megabytes(num_bytes_) + "; airdos-check checks all");
   }
   if (num_bytes_skipped_ > 0 || num_lost_ > 0) {
     findings->Fail(kLogDamagedKind, path_,
@@ -54,7 +54,7 @@ void LogSurvey::ReportExtent(FindingList* findings) const {
     outputs += (outputs.empty() ? "" : ", ") + name;
   if (outputs.empty()) return;
   findings->Note("log.outputs", path_,
-                 "holds outputs of a run as well (" + outputs +
+                 "contains outputs of a run as well (" + outputs +
                      "): play the inputs only into running processes, as replay_log.sh and "
                      "airdos-stereo-player do; airdos-record --inputs-only records no others");
 }
@@ -94,11 +94,12 @@ void LogSurvey::ReportOrder(const std::string& name, const Channel& channel,
                    channel.repeated.text + AndMore(channel.repeated.num, all));
   }
   if (channel.restarted.num > 0) {
-    findings->Fail("log.order", Where(path_, name, channel.restarted.first),
-                   channel.restarted.text +
-                       ": its session starts again, and nobody works on it twice; whatever is "
-                       "played or started again must take a new session (airdos-stereo-player "
-                       "--session)");
+    findings->Fail(
+        "log.order", Where(path_, name, channel.restarted.first),
+        channel.restarted.text +
+            ": its session starts again, but a session is processed only once; whatever is "
+            "played or started again must take a new session (airdos-stereo-player "
+            "--session)");
   }
   if (channel.backwards.num > 0) {
     findings->Fail("log.order", Where(path_, name, channel.backwards.first),
@@ -116,7 +117,7 @@ void LogSurvey::ReportOrder(const std::string& name, const Channel& channel,
 
 void LogSurvey::ReportSessions(FindingList* findings) const {
   if (sessions_.size() < 2) return;
-  std::string text = std::to_string(sessions_.size()) + " sessions, a run of its own each:";
+  std::string text = std::to_string(sessions_.size()) + " sessions, each a separate run:";
   for (std::size_t i = 0; i < std::min(sessions_.size(), kMaxSessionsListed); ++i) {
     const Session& session = sessions_[i];
     text += (i == 0 ? " " : ", ") + std::to_string(session.session) + " with " +
@@ -124,7 +125,7 @@ void LogSurvey::ReportSessions(FindingList* findings) const {
             " to " + std::to_string(session.last_seq) + ")";
   }
   if (sessions_.size() > kMaxSessionsListed) text += ", …";
-  findings->Warn("log.sessions", path_, text + "; pictures of the first are looked at");
+  findings->Warn("log.sessions", path_, text + "; pictures of the first are checked");
 }
 
 void LogSurvey::ReportCalibration(FindingList* findings) const {
@@ -171,7 +172,7 @@ void LogSurvey::ReportAbsent(FindingList* findings) const {
     const std::string text = "no message, for " + std::to_string(num_left) + " of CAMERA_LEFT";
     if (name == channel::kCameraRight) {
       findings->Fail("log.count", path_ + ": " + name,
-                     text + hint + (like ? "" : "; the log holds " + all_channels_.List()));
+                     text + hint + (like ? "" : "; the log contains " + all_channels_.List()));
     } else if (like || name != channel::kGroundTruth) {
       findings->Warn("log.count", path_ + ": " + name, text + hint);
     }

@@ -8,7 +8,7 @@
 namespace airdos {
 namespace {
 
-constexpr std::size_t kMaxSizes = 10;  // more are not told apart: a hostile log has a new one each
+constexpr std::size_t kMaxSizes = 10;  // limit: a hostile log may have a new size in each message
 
 std::string OfAll(std::int64_t count, std::int64_t all) {
   return "; so " + std::to_string(count) + " of " + std::to_string(all) + " messages";
@@ -64,7 +64,7 @@ void LogSizes::Report(const std::string& path, const std::optional<StereoCamera>
     if (channel.contradicted.num > 0) {
       const bool is_exchanged = channel.said == channel.of_file.Exchanged();
       findings->Fail(kind, where + std::to_string(channel.contradicted.first_seq),
-                     "the message says " + channel.said.Text() + ", the file in it is of " +
+                     "the message says " + channel.said.Text() + ", the file in it has " +
                          channel.of_file.Text() +
                          (is_exchanged ? ": width and height are exchanged" : "") +
                          OfAll(channel.contradicted.num, channel.num));
@@ -76,7 +76,7 @@ void LogSizes::Report(const std::string& path, const std::optional<StereoCamera>
 void LogSizes::ReportSizes(const std::string& path, const std::string& name, const Channel& channel,
                            const std::optional<StereoCamera>& camera, FindingList* findings) const {
   if (channel.sizes.empty()) return;
-  // What all should be of: what was calibrated, else what the first one is.
+  // The expected size: that of the calibration, otherwise that of the first image.
   const auto oldest = std::min_element(
       channel.sizes.begin(), channel.sizes.end(),
       [](const auto& a, const auto& b) { return a.second.first_seq < b.second.first_seq; });

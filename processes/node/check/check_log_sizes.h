@@ -13,8 +13,8 @@
 
 namespace airdos {
 
-/// Whether the images and masks of a log have the sizes that their messages, the files in them and
-/// the calibration say. Nothing is decoded: files say their size in their first bytes.
+/// Checks whether the images and masks of a log have the sizes that their messages, the files in
+/// them and the calibration state. Decodes nothing: files state their size in their first bytes.
 class LogSizes {
  public:
   void Add(const std::string& channel, const image_t& message);
@@ -23,6 +23,7 @@ class LogSizes {
               FindingList* findings) const;
 
  private:
+  /// Width and height of an image.
   struct Size {
     std::int64_t width = 0;   // px
     std::int64_t height = 0;  // px
@@ -37,15 +38,16 @@ class LogSizes {
     }
     Size Exchanged() const { return {height, width}; }
   };
-  struct Group {  // messages alike
+  struct Group {  // similar messages
     std::int64_t num = 0;
     std::int64_t first_seq = 0;
   };
+  /// What was found on one channel.
   struct Channel {
     std::int64_t num = 0;
-    Group unreadable;    // neither JPEG nor PNG, though it is said to be
-    Group contradicted;  // the file has another size than the message says
-    Size said;           // by the first of those; likewise the next
+    Group unreadable;    // neither JPEG nor PNG, although the message says so
+    Group contradicted;  // the file's size differs from the message's
+    Size said;           // stated by the first of those; the next is its file's
     Size of_file;
     std::map<Size, Group> sizes;  // of the pictures themselves
   };

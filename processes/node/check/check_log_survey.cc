@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/util/format.h"
 #include "processes/node/log/log_source.h"
 #include "processes/node/message/channels.h"
 #include "processes/node/message/codec.h"
@@ -17,9 +18,7 @@ TrajectoryAxes ToAxes(int axes) {
 }
 
 std::string Hex(std::int64_t fingerprint) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "0x%016llx", static_cast<unsigned long long>(fingerprint));
-  return text;
+  return Format("0x%016llx", static_cast<unsigned long long>(fingerprint));
 }
 
 template <class Message>
@@ -157,7 +156,7 @@ void LogSurvey::TakeCalibration(const stereo_calibration_t& message) {
     camera_ = camera;
   } else if (!(*camera_ == camera)) {
     calibration_changes_.Add(message.seq,
-                             "differs from the first one; only the first of a session holds");
+                             "differs from the first one; only the first of a session applies");
   }
 }
 

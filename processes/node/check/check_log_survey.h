@@ -21,54 +21,56 @@
 
 namespace airdos {
 
-/// What one reading of a log says of its channels, message by message: the images themselves are
-/// not decoded. Nothing is said of a single message; each kind of mistake is said once a channel,
-/// with a count, by Report().
+/// Surveys the channels of a log in a single pass, message by message, without decoding the images.
+/// Report() reports each kind of mistake once per channel, with a count, rather than for each
+/// message.
 class LogSurvey {
  public:
   using FrameKey = std::pair<std::int64_t, std::int64_t>;  ///< session, seq
 
-  /// A name for a message in findings: "LOG: CAMERA_LEFT 17".
+  /// A name for a message in findings, such as "LOG: CAMERA_LEFT 17".
   static std::string Where(const std::string& path, const std::string& channel, std::int64_t seq);
 
-  /// Reads the log up to `max_bytes`. Throws InputError where the file is no log.
+  /// Reads the log up to `max_bytes`. Throws InputError if the file is not a log.
   explicit LogSurvey(const std::string& path,
                      std::int64_t max_bytes = std::numeric_limits<std::int64_t>::max());
-  /// Types, counts, gaps, partners, sessions, sizes, times, calibration.
+  /// Reports on types, counts, gaps, partners, sessions, sizes, times and calibration.
   void Report(FindingList* findings) const;
 
   const std::optional<StereoCamera>& camera() const { return camera_; }
-  /// Of CAMERA_LEFT, first session.
+  /// Those of CAMERA_LEFT in the first session.
   const std::vector<FrameKey>& frames() const { return frames_; }
   const std::vector<std::int64_t>& utimes() const { return utimes_; }
   const std::vector<std::optional<Se3>>& ground_truth() const { return ground_truth_; }
   TrajectoryAxes ground_truth_axes() const { return axes_; }
 
  private:
-  /// Above it default receive buffers lose messages.
+  /// Larger messages are lost with default receive buffers.
   static constexpr std::size_t kLargeMessageBytes = 128 << 10;
 
-  /// Messages of a channel that have one mistake.
+  /// The messages of a channel that share a mistake.
   struct Mistake {
     std::int64_t num = 0;
-    std::int64_t first = 0;  // number of the event, or of the image
-    std::string text;        // of the first
+    std::int64_t first = 0;  // number of the event or image
+    std::string text;        // about the first one
     void Add(std::int64_t where, const std::string& what);
   };
+  /// What was found on one channel.
   struct Channel {
     std::int64_t num_messages = 0;
     std::int64_t num_large = 0;
     std::size_t max_bytes = 0;
     Mistake rejected;
     Mistake wrong_type;
-    std::int64_t num_missing = 0;  // numbers left out
+    std::int64_t num_missing = 0;  // missing numbers
     Mistake gap;
     Mistake repeated;
     Mistake backwards;
-    Mistake restarted;            // back to the first number of the session
-    std::optional<Header> first;  // of the session of the last one
+    Mistake restarted;            // messages that return to the session's first number
+    std::optional<Header> first;  // first header in the last message's session
     std::optional<Header> last;
   };
+  /// One session of the log.
   struct Session {
     std::int64_t session = 0;
     std::int64_t first_seq = 0;
@@ -77,7 +79,7 @@ class LogSurvey {
   };
 
   void Take(const LogEvent& event);
-  /// The message if it is sound; else why it is not is noted.
+  /// The message if it is valid; otherwise records why it is not.
   template <class Message>
   std::optional<Message> Sound(const LogEvent& event, Channel* channel);
   void TakeHeader(const std::string& name, const Header& header, Channel* channel);
@@ -97,10 +99,10 @@ class LogSurvey {
   std::int64_t num_bytes_ = 0;
   std::int64_t num_bytes_read_ = 0;
   LogChannels all_channels_;
-  std::map<std::string, Channel> channels_;  // inputs
+  std::map<std::string, Channel> channels_;  // input channels
   LogPairing pairing_;
   LogSizes sizes_;
-  std::map<FrameKey, std::int64_t> utime_of_;  // of CAMERA_LEFT
+  std::map<FrameKey, std::int64_t> utime_of_;  // on CAMERA_LEFT
   std::vector<Session> sessions_;              // in order of appearance
   std::vector<FrameKey> frames_;
   std::vector<std::int64_t> utimes_;

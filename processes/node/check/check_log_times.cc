@@ -5,12 +5,13 @@
 #include <cmath>
 
 #include "common/check/check_times.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
 
-// Of cameras. Between the units lie factors of 1000, and a camera may be slow: of the units that
-// would fit, the one nearest to 20 images a second is meant.
+// Periods of cameras. The units differ by factors of 1000 and a camera may be slow: among the units
+// that would fit, the one closest to 20 images per second is assumed.
 constexpr double kMinPeriod_s = 0.004;
 constexpr double kMaxPeriod_s = 2;
 constexpr double kUsualPeriod_s = 0.05;
@@ -18,13 +19,13 @@ constexpr double kUsualPeriod_s = 0.05;
 std::vector<double> Intervals_us(const std::vector<std::int64_t>& utimes) {
   std::vector<double> intervals_us;
   for (std::size_t i = 1; i < utimes.size(); ++i) {
-    // Floating point: the difference of hostile times may not fit into an integer.
+    // In floating point: the difference of hostile times may not fit into an integer.
     intervals_us.push_back(static_cast<double>(utimes[i]) - static_cast<double>(utimes[i - 1]));
   }
   return intervals_us;
 }
 
-/// The unit in which an interval of so many would be that of a camera; empty for none, and for us.
+/// The unit in which this interval would suit a camera; empty if there is none, or for us.
 std::string OtherUnit(double interval) {
   struct Unit {
     const char* name;
@@ -44,7 +45,7 @@ std::string OtherUnit(double interval) {
   return period_s >= kMinPeriod_s && period_s <= kMaxPeriod_s ? best->name : "";
 }
 
-/// Whether the times can be ordered at all; what they lack is said once.
+/// Whether the times are ordered at all; reports once what is wrong with them.
 bool CheckOrder(const std::vector<double>& intervals_us, const std::string& where,
                 FindingList* findings) {
   const auto report = [&](auto is_wrong, const std::string& what) {
@@ -53,7 +54,7 @@ bool CheckOrder(const std::vector<double>& intervals_us, const std::string& wher
     const auto num = std::count_if(first, intervals_us.end(), is_wrong);
     findings->Fail("times.order", where,
                    std::to_string(num) + " of " + std::to_string(intervals_us.size() + 1) +
-                       " images " + what + " the one before; the first is at place " +
+                       " images " + what + " the previous one; the first is at place " +
                        std::to_string(first - intervals_us.begin() + 2) + " in the log's order");
     return true;
   };
@@ -78,7 +79,7 @@ void CheckLogTimes(const std::vector<std::int64_t>& utimes, const std::string& w
     return;
   }
   double interval_us = Quantile(intervals_us, 0.5);
-  if (interval_us <= 0) {  // whole seconds repeat
+  if (interval_us <= 0) {  // times in whole seconds repeat
     interval_us = (static_cast<double>(utimes.back()) - static_cast<double>(utimes[0])) /
                   static_cast<double>(intervals_us.size());
   }

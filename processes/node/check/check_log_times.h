@@ -9,9 +9,9 @@
 
 namespace airdos {
 
-/// Whether the utime of images, in their order, can be capture times of a camera in us. Drivers
-/// fill in what their clock gives: ns, ms or s are told by the interval they would make, a clock
-/// that stands still or goes back is said once. Else as CheckTimes().
+/// Checks whether the utimes of images, in order, can be capture times of a camera in us. Some
+/// drivers store whatever their clock returns: ns, ms and s are recognised by the interval that
+/// results, and a clock that stands still or goes back is reported once. Otherwise as CheckTimes().
 void CheckLogTimes(const std::vector<std::int64_t>& utimes, const std::string& where,
                    FindingList* findings);
 

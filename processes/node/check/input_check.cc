@@ -19,7 +19,7 @@ std::string Text(const std::string& path, const Finding& finding) {
 std::string HowToGoOn(const std::string& path, std::size_t num_errors) {
   const std::string more =
       num_errors > 1 ? " (and " + std::to_string(num_errors - 1) + " more errors)" : "";
-  return more + "; 'airdos-check " + path + "' says more, --no-check goes on all the same";
+  return more + "; 'airdos-check " + path + "' says more; --no-check continues anyway";
 }
 
 }  // namespace
@@ -43,8 +43,8 @@ void CheckBeforeRun(const std::string& path, const std::string& calibration,
   std::vector<std::string> errors;
   std::vector<std::string> warnings;
   for (const Finding& finding : findings.findings()) {
-    // What was assumed the source says itself, checked or not. And of a log that is damaged every
-    // event that is whole is worth playing: a recording that a power cut ended, say.
+    // Assumptions are reported by the source itself, checked or not. And in a damaged log every
+    // intact event is worth playing, for example in a recording that ended with a power cut.
     const bool is_known = finding.kind == kAssumedKind;
     const bool is_survived = finding.kind == kLogDamagedKind;
     if (finding.severity == Severity::kError && !is_survived) {
@@ -64,7 +64,7 @@ void AddCalibrationOption(CLI::App* app, std::string* calibration) {
 }
 
 void AddInputCheckOptions(CLI::App* app, InputCheckOptions* options) {
-  app->add_flag("--no-check", options->is_off, "play the input without a look at it beforehand");
+  app->add_flag("--no-check", options->is_off, "play the input without checking it first");
   AddCalibrationOption(app, &options->calibration);
 }
 

@@ -9,13 +9,13 @@
 
 namespace airdos {
 
-/// Looks at a folder or a log as airdos-check does.
+/// Checks a folder or a log, like airdos-check.
 FindingList CheckInput(const std::string& path, const CheckOptions& options);
 
-/// The quick part of it, before a program works on `path`: hands each warning to `say`, a line each
-/// ("warning: WHERE: WHAT"), but for what the data set assumed: FrameSource::TakeNotes() says that
-/// of whoever opens it. Throws InputError with the first error ("WHERE: WHAT"), the number of
-/// others, and how to learn more or go on all the same.
+/// Runs the quick check before a program works on `path`. Passes each warning to `say`, one line
+/// each ("warning: WHERE: WHAT"), except the data set's assumptions, which FrameSource::TakeNotes()
+/// reports to whoever opens it. Throws InputError with the first error ("WHERE: WHAT"), the number
+/// of further errors, and how to learn more or proceed anyway.
 void CheckBeforeRun(const std::string& path, const std::string& calibration,
                     const std::function<void(const std::string&)>& say);
 
@@ -25,7 +25,7 @@ struct InputCheckOptions {
   std::string calibration;  ///< SequenceOptions::calibration
 };
 void AddInputCheckOptions(CLI::App* app, InputCheckOptions* options);
-/// --calibration alone.
+/// Adds --calibration alone.
 void AddCalibrationOption(CLI::App* app, std::string* calibration);
 
 }  // namespace airdos

@@ -12,6 +12,7 @@
 #include "common/util/version.h"
 #include "processes/node/log/log_source.h"
 #include "processes/node/message/channels.h"
+#include "processes/node/message/header.h"
 #include "processes/node/message/types_fingerprint.h"
 
 namespace airdos {
@@ -44,8 +45,12 @@ channel_status_t StatusOf(const std::string& channel, const ChannelCounters& cou
 }  // namespace
 
 LcmRunner::LcmRunner(Node* node, LcmTransport* transport, const LcmRunnerOptions& options,
-                     std::ostream* log)
-    : node_(node), transport_(transport), options_(options), log_(log) {}
+                     const ProcessLog* log)
+    : node_(node),
+      transport_(transport),
+      options_(options),
+      log_(log),
+      service_(options.notify_socket, log) {}
 
 void LcmRunner::Start() {
   for (const std::string& channel : node_->input_channels()) {
@@ -194,7 +199,9 @@ void LcmRunner::CompleteAfterDeadline() {
   if (silent_said_.insert(silent).second) {
     std::ostringstream line;
     line << "nothing on " << silent << " for " << waited_s << " s: frames are completed without it";
-    Say(line.str());
+    log_->Warning(line.str());
+  } else {
+    log_->Debug("a frame is completed without " + silent);
   }
   PublishStatus(process_status_t::STATE_STALLED);  // while waiting_for() still names the channels
   try {
@@ -217,15 +224,22 @@ void LcmRunner::PublishOutput() {
       std::max(0.0, 1e-3 * static_cast<double>(WallClock_us() - last_receive_utime_));
   latency_ms_.Add(latency_ms);
   long_latency_ms_.Add(latency_ms);
+  if (log_->Says(LogLevel::kDebug)) SayFrame(latency_ms);
   if (options_.publishes_frame_done) PublishFrameDone();
+}
+
+void LcmRunner::SayFrame(double latency_ms) {
+  if (!node_->last_finished()) return;
+  std::ostringstream line;
+  line << "image " << node_->last_finished()->seq << " of session "
+       << node_->last_finished()->session << " is done, " << std::fixed << std::setprecision(1)
+       << latency_ms << " ms after its last input; " << node_->num_pending() << " wait";
+  log_->Debug(line.str());
 }
 
 void LcmRunner::PublishFrameDone() {
   if (!node_->last_finished()) return;
-  frame_done_t message = {};
-  message.utime = node_->last_finished()->utime;
-  message.seq = node_->last_finished()->seq;
-  message.session = node_->last_finished()->session;
+  auto message = MessageOf<frame_done_t>(*node_->last_finished());
   message.process = options_.process;
   Publish(channel::kFrameDone, message);
 }
@@ -238,12 +252,7 @@ void LcmRunner::PublishStatusWhenDue() {
 }
 
 void LcmRunner::PublishStatus(std::int8_t state) {
-  process_status_t status = {};
-  if (node_->last_finished()) {
-    status.utime = node_->last_finished()->utime;
-    status.seq = node_->last_finished()->seq;
-    status.session = node_->last_finished()->session;
-  }
+  auto status = MessageOf<process_status_t>(node_->last_finished().value_or(Header()));
   status.process = options_.process;
   status.version = kVersion;
   status.types_fingerprint = TypesFingerprint();
@@ -267,6 +276,22 @@ void LcmRunner::PublishStatus(std::int8_t state) {
   }
   status.num_channels = static_cast<std::int32_t>(status.channels.size());
   Publish(channel::kStatus, status);
+  TellService(state);
+}
+
+void LcmRunner::TellService(std::int8_t state) {
+  std::ostringstream text;
+  if (node_->last_finished()) {
+    text << "image " << node_->last_finished()->seq << " of session "
+         << node_->last_finished()->session << ", ";
+  }
+  const FrameCounters& frames = node_->frames();
+  text << "frames done " << frames.num_done << ", incomplete " << frames.num_incomplete
+       << ", skipped " << frames.num_skipped;
+  if (state == process_status_t::STATE_STALLED) text << "; waits for " << node_->waiting_for();
+  if (!last_error_.empty()) text << "; last error: " << last_error_;
+  if (state == process_status_t::STATE_STOPPING) return service_.TellStopping(text.str());
+  service_.Tell(text.str());
 }
 
 template <class Message>
@@ -277,7 +302,7 @@ void LcmRunner::Publish(const std::string& channel, const Message& message) {
 void LcmRunner::PublishBytes(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
   if (transport_->Publish(channel, bytes.data(), bytes.size())) return;
   last_error_ = "cannot publish on " + channel;
-  if (!publish_failure_said_) Say(last_error_ + ": is the network gone?");
+  if (!publish_failure_said_) log_->Error(last_error_ + ": is the network gone?");
   publish_failure_said_ = true;
 }
 
@@ -285,51 +310,48 @@ void LcmRunner::SayError(const std::string& error) {
   constexpr std::size_t kMaxErrorsSaid = 100;  // stderr may go to a disk
   last_error_ = error.substr(0, 500);          // STATUS takes no text that is much longer
   if (errors_said_.size() < kMaxErrorsSaid && errors_said_.insert(error).second) {
-    Say("error: " + error + " (said once; STATUS has the last error)");
+    log_->Error(error + " (said once; STATUS has the last error)");
   }
 }
 
 void LcmRunner::SayWarning(const std::string& warning) {
   own_warnings_.push_back(warning);
   if (own_warnings_.size() > Node::kMaxWarnings) own_warnings_.pop_front();
-  Say("warning: " + warning);
+  log_->Warning(warning);
 }
 
 void LcmRunner::SayWarnings() {
   constexpr int kMaxWarningsSaid = 100;  // stderr may go to a disk
   for (const std::string& warning : node_->TakeWarnings()) {
-    if (++num_warnings_said_ <= kMaxWarningsSaid) Say("warning: " + warning);
+    if (++num_warnings_said_ <= kMaxWarningsSaid) log_->Warning(warning);
   }
-}
-
-void LcmRunner::Say(const std::string& line) {
-  *log_ << options_.process << ": " << line << std::endl;
 }
 
 void LcmRunner::SayFirstRejects() {
   for (const auto& [channel, counters] : node_->channels()) {
     if (counters.num_rejected == 0 || !rejects_said_.insert(channel).second) continue;
-    Say("rejected a message on " + channel + ": " + counters.last_reject +
-        " (further ones are counted in STATUS)");
+    log_->Warning("rejected a message on " + channel + ": " + counters.last_reject +
+                  " (further ones are counted in STATUS)");
   }
 }
 
 void LcmRunner::SayCounters() {
   const FrameCounters& frames = node_->frames();
-  Say("stopped; frames done " + std::to_string(frames.num_done) + ", incomplete " +
-      std::to_string(frames.num_incomplete) + ", skipped " + std::to_string(frames.num_skipped));
-  if (!node_->summary().empty()) Say(node_->summary());
+  log_->Info("stopped; frames done " + std::to_string(frames.num_done) + ", incomplete " +
+             std::to_string(frames.num_incomplete) + ", skipped " +
+             std::to_string(frames.num_skipped));
+  if (!node_->summary().empty()) log_->Info(node_->summary());
   std::ostringstream latency;
   latency << std::fixed << std::setprecision(1) << "latency p50 "
           << long_latency_ms_.Percentile(0.5) << " ms, p99 " << long_latency_ms_.Percentile(0.99)
           << " ms";
-  Say(latency.str());
+  log_->Info(latency.str());
   for (const auto& [channel, counters] : node_->channels()) {
-    Say(channel + ": received " + std::to_string(counters.num_received) + ", missing " +
-        std::to_string(counters.num_missing) + ", duplicate " +
-        std::to_string(counters.num_duplicate) + ", rejected " +
-        std::to_string(counters.num_rejected) +
-        (counters.last_reject.empty() ? "" : " (" + counters.last_reject + ")"));
+    log_->Info(channel + ": received " + std::to_string(counters.num_received) + ", missing " +
+               std::to_string(counters.num_missing) + ", duplicate " +
+               std::to_string(counters.num_duplicate) + ", rejected " +
+               std::to_string(counters.num_rejected) +
+               (counters.last_reject.empty() ? "" : " (" + counters.last_reject + ")"));
   }
 }
 

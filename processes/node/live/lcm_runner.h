@@ -4,13 +4,14 @@
 #include <cstdint>
 #include <deque>
 #include <map>
-#include <ostream>
 #include <set>
 #include <string>
 
 #include "processes/node/live/lcm_transport.h"
 #include "processes/node/live/own_output.h"
+#include "processes/node/live/process_log.h"
 #include "processes/node/live/process_usage.h"
+#include "processes/node/live/service_notifier.h"
 #include "processes/node/node.h"
 
 namespace airdos {
@@ -28,6 +29,7 @@ struct LcmRunnerOptions {
   /// While this process stands still, stopped or on a machine that is, no time passes.
   double deadline_s = 5;
   bool publishes_frame_done = false;  ///< says FRAME_DONE after each frame
+  std::string notify_socket;          ///< see ServiceNotifier
 };
 
 /// Runs one node behind LCM until SIGINT, SIGTERM or SIGHUP: hands in what arrives, publishes what
@@ -44,9 +46,9 @@ class LcmRunner {
   /// Messages of somebody else on the node's output channels that end the run.
   static constexpr int kMaxForeign = 3;
 
-  /// Neither is owned. `log` takes what people are to read, one line each.
+  /// None of the pointers is owned.
   LcmRunner(Node* node, LcmTransport* transport, const LcmRunnerOptions& options,
-            std::ostream* log);
+            const ProcessLog* log);
 
   /// Subscribes; from its return on every message is heard. Throws as LcmTransport does.
   void Start();
@@ -64,11 +66,12 @@ class LcmRunner {
   double Patience_s();
   void NoteSilent(const std::string& channels);
   void PublishOutput();
+  void SayFrame(double latency_ms);
   void PublishFrameDone();
   void PublishStatus(std::int8_t state);
   void PublishStatusWhenDue();
-  void Say(const std::string& line);
-  /// Warns, on stderr and in STATUS.
+  void TellService(std::int8_t state);
+  /// Warns, in the log and in STATUS.
   void SayWarning(const std::string& warning);
   void SayWarnings();
   void HearOwnChannel(const std::string& channel, const void* data, std::size_t size);
@@ -86,7 +89,8 @@ class LcmRunner {
   Node* node_;
   LcmTransport* transport_;
   LcmRunnerOptions options_;
-  std::ostream* log_;
+  const ProcessLog* log_;
+  ServiceNotifier service_;
 
   std::int64_t last_receive_utime_ = 0;
   // When a frame was finished last or none waited; later by how long this process stood still.

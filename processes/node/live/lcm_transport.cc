@@ -20,7 +20,7 @@ volatile std::sig_atomic_t stop_requested = 0;
 
 void RequestStop(int) { stop_requested = 1; }
 
-/// LCM says what is wrong in a dozen lines on stderr; we say it in one.
+/// LCM reports errors in a dozen lines on stderr; we report them in one.
 class StderrSilencer {
  public:
   StderrSilencer() : saved_(dup(STDERR_FILENO)) {
@@ -41,8 +41,8 @@ class StderrSilencer {
   int saved_;
 };
 
-/// Multicast with a large receive buffer, as far as the system allows, unless the URL says how
-/// large: the kernel's default of 212,992 B loses bursts of messages of more than one datagram.
+/// Requests a large receive buffer, as far as the system allows, unless the URL specifies one: the
+/// kernel's default of 212,992 B loses bursts of messages that span more than one datagram.
 std::string WithReceiveBuffer(const std::string& url) {
   if (url.rfind("udpm://", 0) != 0 || url.find("recv_buf_size") != std::string::npos) return url;
   return url + (url.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=4194304";
@@ -71,7 +71,7 @@ void InstallStopSignals() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  // The terminal is gone, and with it nothing else; nohup says beforehand to go on without it.
+  // Closing the terminal should stop us as well, unless nohup has asked to ignore it.
   struct sigaction before = {};
   sigaction(SIGHUP, nullptr, &before);
   if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
@@ -92,7 +92,7 @@ void LcmTransport::SubscribeTo(const std::string& regex, int max_queued) {
   lcm::Subscription* subscription = lcm_->subscribe(regex, &LcmTransport::OnMessage, this);
   if (subscription == nullptr) FailToOpen(url_);
   // Far above LCM's 30, but bounded: beyond it LCM drops the newest message, which the image
-  // numbers show. Without a bound, whoever sends faster than we work would take all memory.
+  // numbers reveal. Without a bound, a sender that is faster than us would use up all memory.
   subscription->setQueueCapacity(max_queued);
 }
 
@@ -122,7 +122,7 @@ bool LcmTransport::Publish(const std::string& channel, const void* data, std::si
 }
 
 void LcmTransport::OnMessage(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
-  // An exception that unwinds through LCM's C code makes its next call abort.
+  // An exception that unwinds through LCM's C code makes the next call abort.
   try {
     if (all_handler_) all_handler_(channel, buffer->data, buffer->data_size, buffer->recv_utime);
     const auto handler = handlers_.find(channel);

@@ -24,10 +24,10 @@ constexpr char kProcessName[] = "airdos-record";
 constexpr int kPollTimeout_ms = 50;
 constexpr double kStatusPeriod_s = 1.0;
 
-// The writer replaces what is there.
+// The writer replaces an existing file.
 const std::string& CheckedPath(const LogRecorderOptions& options) {
   if (!options.replaces_file && StampOf(options.path)) {
-    throw InputError(options.path + ": is there already; --force replaces it");
+    throw InputError(options.path + ": already exists; --force replaces it");
   }
   CheckOutputFile(options.path, {{}, options.replaces_file});
   return options.path;
@@ -90,7 +90,7 @@ void LogRecorder::Take(const std::string& channel, const void* data, std::size_t
 ChannelCounters& LogRecorder::CountersOf(const std::string& channel) {
   const auto known = channels_.find(channel);
   if (known != channels_.end()) return known->second;
-  // The channels that are counted for gaps are never among the others, whatever came first.
+  // Channels that are counted for gaps always get their own entry, whatever came first.
   return channels_[channels_.size() < kMaxChannels || CarriesEveryImage(channel) ? channel
                                                                                  : kOtherChannels];
 }
@@ -114,11 +114,11 @@ void LogRecorder::CountGap(const std::string& channel, const void* data, std::si
   Header& newest = entry->second;
   if (!is_first && newest.session == header->session) {
     if (header->seq <= newest.seq) return;
-    // Unsigned, because the difference of hostile numbers may not fit.
+    // Unsigned, because the difference of hostile numbers may overflow.
     const std::uint64_t num_missing =
         static_cast<std::uint64_t>(header->seq) - static_cast<std::uint64_t>(newest.seq) - 1;
     if (num_missing > static_cast<std::uint64_t>(FrameJoiner::kMaxAhead))
-      return;  // the processes do not believe it either
+      return;  // the processes reject it as well
     channels_[channel].num_missing += static_cast<std::int64_t>(num_missing);
   }
   newest = *header;
@@ -132,19 +132,20 @@ std::string LogRecorder::Summary() const {
     if (counters.num_missing > 0) text << ", " << counters.num_missing << " missing";
     text << "\n";
   }
-  if (num_rejected_ > 0) text << num_rejected_ << " messages no log can hold were left out\n";
+  if (num_rejected_ > 0) text << num_rejected_ << " messages that no log can hold were left out\n";
   text << options_.path << ": " << writer_.num_events() << " events, " << writer_.num_bytes()
        << " bytes\n";
   return text.str();
 }
 
-int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, std::ostream* log) {
+int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, std::ostream* out,
+                   const ProcessLog& log, ServiceNotifier* service) {
   LogRecorder recorder(options);
   transport->SubscribeAll([&recorder](const std::string& channel, const void* data,
                                       std::size_t size, std::int64_t receive_utime) {
     recorder.Take(channel, data, size, receive_utime);
   });
-  *log << kProcessName << " READY version " << kVersion << " url " << transport->url() << " file "
+  *out << kProcessName << " READY version " << kVersion << " url " << transport->url() << " file "
        << options.path << std::endl;
   std::string error;
   double next_status_s = 0;
@@ -154,6 +155,7 @@ int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, s
       const double now_s = SteadyClock_s();
       if (now_s >= next_status_s) {
         PublishStatus(recorder, transport, process_status_t::STATE_READY, "");
+        service->Tell("recording to " + options.path);
         next_status_s = now_s + kStatusPeriod_s;
       }
       if (now_s >= next_sync_s) {
@@ -162,16 +164,17 @@ int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, s
       }
       transport->Poll(kPollTimeout_ms);
     }
-    // What arrived before the signal is recorded as well.
+    // What arrived before the signal is still recorded.
     while (transport->Poll(0)) {
     }
     recorder.Sync();
   } catch (const WriteError& failure) {
     error = failure.what();
-    *log << kProcessName << ": " << error << std::endl;
+    log.Error(error);
   }
   PublishStatus(recorder, transport, process_status_t::STATE_STOPPING, error);
-  *log << recorder.Summary() << std::flush;
+  service->TellStopping(error.empty() ? "recorded to " + options.path : error);
+  *out << recorder.Summary() << std::flush;
   return error.empty() ? 0 : 1;
 }
 

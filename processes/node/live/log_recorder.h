@@ -9,11 +9,14 @@
 #include <string>
 
 #include "processes/node/live/lcm_transport.h"
+#include "processes/node/live/process_log.h"
+#include "processes/node/live/service_notifier.h"
 #include "processes/node/log/event_log.h"
 #include "processes/node/node.h"
 
 namespace airdos {
 
+/// What is recorded, and where.
 struct LogRecorderOptions {
   std::string path;
   std::string channels = ".*";  ///< regular expression (ECMAScript) of whole names
@@ -22,29 +25,29 @@ struct LogRecorderOptions {
   bool replaces_file = false;   ///< otherwise a file that exists already is bad input
 };
 
-/// Writes what arrives into an event log and counts it. Knows no network and no clock.
+/// Writes arriving messages to an event log and counts them. Knows neither network nor clock.
 class LogRecorder {
  public:
-  /// Channels that are counted, each by its name; further ones together, as kOtherChannels. STATUS
-  /// holds no more.
+  /// Number of channels that are counted under their own names; further ones are counted together
+  /// as kOtherChannels. STATUS has no room for more.
   static constexpr std::size_t kMaxChannels = 90;
   static constexpr char kOtherChannels[] = "(others)";
 
-  /// Throws InputError if the file cannot be created (or is there already), or for a wrong regular
-  /// expression.
+  /// Throws InputError if the file cannot be created (or already exists), or if the regular
+  /// expression is invalid.
   explicit LogRecorder(const LogRecorderOptions& options);
 
-  /// Throws WriteError, also where the disk has hardly any room left. LCM's own LCM_SELF_TEST is
-  /// left out, and so is what no log can hold.
+  /// Throws WriteError, including when the disk is nearly full. Skips LCM's own LCM_SELF_TEST and
+  /// whatever a log cannot hold.
   void Take(const std::string& channel, const void* data, std::size_t size,
             std::int64_t receive_utime);
   void Sync() { writer_.Sync(); }
 
-  /// What was taken of each channel. num_missing counts gaps of `seq` within a session, on channels
-  /// that carry every image; numbers more than FrameJoiner::kMaxAhead ahead are nonsense.
+  /// What was recorded, by channel. num_missing counts gaps of `seq` within a session on channels
+  /// that carry every image; numbers more than FrameJoiner::kMaxAhead ahead are considered invalid.
   const std::map<std::string, ChannelCounters>& channels() const { return channels_; }
   std::int64_t num_events() const { return writer_.num_events(); }
-  /// One line a channel and one for all.
+  /// One line per channel and one for the total.
   std::string Summary() const;
 
  private:
@@ -58,13 +61,14 @@ class LogRecorder {
   std::map<std::string, ChannelCounters> channels_;
   std::map<std::string, Header> newest_;
   std::int64_t num_rejected_ = 0;
-  std::size_t num_bytes_unchecked_ = 0;  // since the disk was asked how much room it has
+  std::size_t num_bytes_unchecked_ = 0;  // since the free disk space was last checked
 };
 
-/// Records until StopRequested(), and says STATUS once a second, so that a source can wait for the
-/// recorder. Returns the exit code: 1 if the log could not be written to its end (said once on
-/// `log`).
-int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, std::ostream* log);
+/// Records until StopRequested() and publishes STATUS once a second, so that a source can wait for
+/// the recorder. `out` receives the line that says READY, and the summary at the end. Returns the
+/// exit code: 1 if the log could not be written completely (reported once in `log`).
+int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, std::ostream* out,
+                   const ProcessLog& log, ServiceNotifier* service);
 
 }  // namespace airdos
 

@@ -9,34 +9,35 @@
 
 namespace airdos {
 
-/// Tells what this process said from what somebody else says on the same channels. LCM hands every
-/// message back to whoever published it, so each must be heard once; what is heard more often, or
-/// was never said, is of somebody else: another process of the same kind, or a log that also holds
-/// outputs, whose bytes may well be the same.
+/// Distinguishes this process's own messages from those that others publish on the same channels.
+/// LCM delivers every message to its publisher as well, so each must come back exactly once.
+/// Whatever comes back more often, or was never published, is somebody else's: another process of
+/// the same kind, or a log that contains outputs, possibly with identical bytes.
 ///
-/// Before this process has said anything it takes no offence: a process that was killed, and whose
-/// place it took, may have had messages on their way. A network that doubles a message now and then
-/// is none either.
+/// Until this process has published something, foreign messages are tolerated: a killed process
+/// that it replaces may have left messages in transit. A network that duplicates a message now and
+/// then is tolerated as well.
 class OwnOutput {
  public:
-  /// Messages of each channel that are remembered: far more than wait in LCM's queue.
+  /// Messages remembered per channel: far more than LCM's queue holds.
   static constexpr std::size_t kMaxRemembered = 4096;
-  /// So many that are heard twice, each within kDoubledWithin messages of the one before, may be an
-  /// accident.
+  /// Up to this many duplicates, each within kDoubledWithin messages of the previous one, may be
+  /// accidental.
   static constexpr int kMaxDoubled = 2;
   static constexpr int kDoubledWithin = 100;
 
-  /// A message that this process is about to publish.
+  /// Records a message that this process is about to publish.
   void AddSaid(const std::string& channel, const void* data, std::size_t size);
-  /// A message that was heard. Whether it is of somebody else.
+  /// Records a received message. Returns whether it is somebody else's.
   bool IsForeign(const std::string& channel, const void* data, std::size_t size);
 
  private:
+  /// What is expected to come back on one channel.
   struct Channel {
-    std::deque<std::size_t> order;               // of the hashes, oldest first
-    std::map<std::size_t, int> num_to_be_heard;  // by hash; below 0: more often than said
+    std::deque<std::size_t> order;               // hashes, oldest first
+    std::map<std::size_t, int> num_to_be_heard;  // by hash; negative if heard more often than said
     int num_doubled = 0;
-    int num_said_since = 0;  // the last one was heard twice
+    int num_said_since = 0;  // since the last duplicate
   };
   std::map<std::string, Channel> channels_;
   bool has_spoken_ = false;

@@ -3,13 +3,34 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 
 #include "common/util/error.h"
 #include "common/util/output_files.h"
 #include "common/util/suggestion.h"
 #include "processes/node/live/lcm_transport.h"
+#include "processes/node/live/process_log.h"
 
 namespace airdos {
+namespace {
+
+/// Prints the page and ends the program as --help does. What it would not heed is refused: it
+/// tells of the defaults.
+void AddPage(const std::string& name, const std::string& page, const std::string& help,
+             CLI::App* app) {
+  app->add_flag_callback(
+      name,
+      [name, page, app] {
+        for (const char* other : {"--config", "--set"}) {
+          if (app->count(other) > 0) throw CLI::ExcludesError(name, other);
+        }
+        std::cout << page;
+        throw CLI::Success();
+      },
+      help);
+}
+
+}  // namespace
 
 std::string ConfigFolder() {
   std::error_code ignored;
@@ -20,8 +41,16 @@ std::string ConfigFolder() {
   return AIRDOS_SOURCE_CONFIG_DIR;
 }
 
-void AddCommonOptions(const std::string& config_name, CLI::App* app, CommonArguments* arguments) {
+void AddLogLevel(std::string* level, CLI::App* app) {
+  app->add_option("--log-level", *level, "Omit lines on stderr below this level")
+      ->check(OneOf(LogLevelNames()))
+      ->capture_default_str();
+}
+
+void AddCommonOptions(const OptionPages& pages, CLI::App* app, CommonArguments* arguments) {
+  const std::string& config_name = pages.config_name;
   arguments->lcm_url = DefaultLcmUrl();
+  arguments->renamed = pages.renamed;
   arguments->config_name = config_name;
   arguments->config_file = ConfigFolder() + "/" + config_name + ".yaml";
   app->add_option("--lcm-url", arguments->lcm_url, "Where the other processes are (LCM URL)")
@@ -36,7 +65,12 @@ void AddCommonOptions(const std::string& config_name, CLI::App* app, CommonArgum
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   AddFile("--resolved-config", &arguments->resolved_config,
           "File to write all options to with the values in force", app);
+  AddPage("--print-config", pages.default_file,
+          "Print " + config_name + ".yaml with its comments, to start one's own from", app);
+  AddPage("--help-config", pages.reference,
+          "Print all keys for --config and --set: default, what is allowed, unit, meaning", app);
   AddForce(&arguments->force, app);
+  AddLogLevel(&arguments->log_level, app);
 }
 
 const std::vector<std::string>& ConfigNames() {
@@ -73,8 +107,8 @@ std::string ConfigFileOf(const std::string& path, const std::string& config_name
 }
 
 ConfigReader ReadConfig(const CommonArguments& arguments) {
-  ConfigReader config =
-      ConfigReader::FromFile(ConfigFileOf(arguments.config_file, arguments.config_name));
+  ConfigReader config = ConfigReader::FromFile(
+      ConfigFileOf(arguments.config_file, arguments.config_name), arguments.renamed);
   for (const std::string& text : arguments.overrides) {
     const Assignment assignment = ParseAssignment(text);
     if (!assignment.process.empty() && assignment.process != arguments.config_name) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/config/config_reader.h"
+#include "common/config/option_pages.h"
 #include "processes/node/live/program_cli.h"
 
 namespace airdos {
@@ -18,12 +19,17 @@ struct CommonArguments {
   std::vector<std::string> overrides;  ///< "section.key=value", or with "process:" before it
   std::string resolved_config;         ///< file to write; empty: none
   bool force = false;                  ///< see OutputRules
+  RenamedKeys renamed;                 ///< of the configuration
+  std::string log_level = "info";      ///< one of LogLevelNames()
 };
 
-/// Adds --lcm-url, --config, --set, --resolved-config and --force; the defaults are those of this
-/// installation. `config_name` is the name of the process' file in the config folder, without
-/// .yaml.
-void AddCommonOptions(const std::string& config_name, CLI::App* app, CommonArguments* arguments);
+/// --log-level, of every process.
+void AddLogLevel(std::string* level, CLI::App* app);
+
+/// Adds --lcm-url, --config, --set, --resolved-config, --force, --log-level, and --print-config and
+/// --help-config, which print a page and end the program; the defaults are those of this
+/// installation.
+void AddCommonOptions(const OptionPages& pages, CLI::App* app, CommonArguments* arguments);
 
 /// The folder with the YAML files: ../share/airdos/config next to an installed program, else that
 /// of the source tree.

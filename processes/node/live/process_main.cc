@@ -7,6 +7,7 @@
 #include "processes/node/live/lcm_runner.h"
 #include "processes/node/live/lcm_transport.h"
 #include "processes/node/live/process_cli.h"
+#include "processes/node/live/process_log.h"
 
 namespace airdos {
 namespace {
@@ -23,14 +24,16 @@ int Run(const ProcessInfo& info, const CommonArguments& arguments, LcmRunnerOpti
   LcmTransport transport(arguments.lcm_url);
   options.process = info.program;
   options.publishes_frame_done = info.publishes_frame_done;
-  LcmRunner runner(node.get(), &transport, options, &std::cerr);
+  options.notify_socket = NotifySocketOfEnvironment();
+  const ProcessLog log(info.program, ParseLogLevel(arguments.log_level));
+  LcmRunner runner(node.get(), &transport, options, &log);
   runner.Start();
   std::cout << info.program << " READY version " << kVersion << " url " << arguments.lcm_url
             << " config " << arguments.config_file << std::endl;
   runner.Run();
   node->Finish();
   const std::string why_in_vain = node->why_in_vain();
-  if (!why_in_vain.empty()) std::cerr << info.program << ": " << why_in_vain << std::endl;
+  if (!why_in_vain.empty()) log.Error(why_in_vain);
   return runner.has_refused() || !why_in_vain.empty() ? 1 : 0;
 }
 
@@ -40,7 +43,7 @@ int RunNodeProcess(int argc, char** argv, const ProcessInfo& info) {
   using Pace = LcmRunnerOptions::Pace;
   CLI::App app(info.description, info.program);
   CommonArguments arguments;
-  AddCommonOptions(info.config_name, &app, &arguments);
+  AddCommonOptions(info.options, &app, &arguments);
   LcmRunnerOptions options;
   std::string pace = "lockstep";
   app.add_option("--pace", pace, "lockstep: every frame is worked on; realtime: the newest one")

@@ -14,7 +14,7 @@ namespace airdos {
 /// What makes one process different from another.
 struct ProcessInfo {
   std::string program;      ///< name of the executable, of the process in STATUS and FRAME_DONE
-  std::string config_name;  ///< <config folder>/<config_name>.yaml is the default of --config
+  OptionPages options;      ///< <config folder>/<its config_name>.yaml is the default of --config
   std::string description;  ///< for --help
   /// Reads the node's options; the caller calls Finish().
   std::function<std::unique_ptr<Node>(ConfigReader*)> make_node;

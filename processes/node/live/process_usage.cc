@@ -3,10 +3,10 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <fstream>
+
+#include "common/util/quantile.h"
 
 namespace airdos {
 
@@ -46,12 +46,6 @@ void RecentValues::Add(double value) {
   next_ = (next_ + 1) % capacity_;
 }
 
-double RecentValues::Percentile(double fraction) const {
-  if (values_.empty()) return 0;
-  std::vector<double> sorted = values_;
-  std::sort(sorted.begin(), sorted.end());
-  const double rank = std::ceil(fraction * static_cast<double>(sorted.size()));
-  return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
-}
+double RecentValues::Percentile(double fraction) const { return Quantile(values_, fraction); }
 
 }  // namespace airdos

@@ -7,21 +7,21 @@
 
 namespace airdos {
 
-/// Wall clock, us. For latency and heartbeats only: the time of data is its capture time.
+/// Wall clock, us. For latencies and heartbeats only: the time of data is its capture time.
 std::int64_t WallClock_us();
-/// A clock that never jumps, s.
+/// A monotonic clock, s.
 double SteadyClock_s();
-/// Processor time of this process so far, ms.
+/// CPU time used by this process so far, ms.
 double CpuTime_ms();
 /// Resident memory of this process, MB.
 double ResidentMemory_mb();
 
-/// Percentiles over the last values.
+/// Percentiles of the most recent values.
 class RecentValues {
  public:
   explicit RecentValues(std::size_t capacity) : capacity_(capacity) {}
   void Add(double value);
-  /// `fraction` in 0..1; nearest rank; 0 while there is no value.
+  /// Their Quantile(); `fraction` is 0..1; 0 if there are no values yet.
   double Percentile(double fraction) const;
 
  private:

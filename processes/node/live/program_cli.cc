@@ -14,25 +14,21 @@
 #include "common/util/error.h"
 #include "common/util/suggestion.h"
 #include "common/util/version.h"
+#include "common/util/words.h"
+#include "processes/node/live/process_log.h"
 
 namespace airdos {
 namespace {
 
-/// The text in lines of at most `width` columns.
+/// Wraps the text into lines of at most `width` columns.
 std::string Wrapped(const std::string& text, std::size_t width) {
-  std::istringstream words(text);
   std::string lines;
-  std::size_t column = 0;
-  for (std::string word; words >> word;) {
-    const bool is_full = column > 0 && column + 1 + word.size() > width;
-    if (column > 0) lines += is_full ? "\n" : " ";
-    column = column == 0 || is_full ? word.size() : column + 1 + word.size();
-    lines += word;
-  }
+  for (const std::string& line : WrapWords(text, width))
+    lines += (lines.empty() ? "" : "\n") + line;
   return lines;
 }
 
-/// --help in lines that fit.
+/// Formats --help with line wrapping.
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
@@ -71,14 +67,16 @@ void UseHelpFormatter(const std::shared_ptr<HelpFormatter>& formatter, CLI::App*
 }
 
 int FailInOneLine(const CLI::App& app, std::string what, int exit_code) {
-  // The texts of libraries may have several lines.
+  // Texts of libraries may span several lines.
   while (!what.empty() && what.back() == '\n') what.pop_back();
   std::replace(what.begin(), what.end(), '\n', ' ');
-  std::cerr << app.get_name() << ": " << what << std::endl;
+  // The journal takes a line without a level for information.
+  const std::string head = StyleOfStderr() == LogStyle::kJournal ? "<3>" : "";
+  std::cerr << head << app.get_name() << ": " << what << std::endl;
   return exit_code;
 }
 
-/// Of the app and the command that was given, without hidden ones.
+/// Options of the app and of the given command, without hidden ones.
 std::vector<std::string> OptionNames(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
@@ -99,7 +97,7 @@ std::vector<std::string> CommandNames(const CLI::App& app) {
   return names;
 }
 
-/// What nobody knows on the command line; empty if the error is another one.
+/// Explains what is unknown on the command line; empty if the error is of another kind.
 std::string ExplainUnknown(const CLI::App& app) {
   const std::vector<std::string> rest = app.remaining(true);
   const auto option = std::find_if(rest.begin(), rest.end(), [](const std::string& word) {
@@ -120,8 +118,8 @@ std::string ExplainUnknown(const CLI::App& app) {
   return "one argument too many: '" + rest[0] + "'" + see;
 }
 
-/// A stream that was closed is taken by the file that is opened next, and what is said goes into
-/// that. With this it fails instead, as to write to what is open for reading does.
+/// The descriptor of a closed stream is reused by the next file that is opened, which would then
+/// receive our messages. This makes writing to it fail instead, as for any file opened read-only.
 void OccupyClosedStreams() {
   for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
     if (fcntl(stream, F_GETFD) >= 0) continue;
@@ -176,7 +174,7 @@ const std::string& InputOptions::path() const {
   for (const std::string* given : {&input_, &data_, &log_}) {
     if (given->empty()) continue;
     if (path != nullptr) {
-      throw InputError("one input only: '" + *path + "' or '" + *given + "'");
+      throw InputError("only one input is possible: '" + *path + "' or '" + *given + "'");
     }
     path = given;
   }

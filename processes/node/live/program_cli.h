@@ -8,10 +8,10 @@
 
 namespace airdos {
 
-// What the command lines of all programs have in common. Their words: INPUT (--data FOLDER, --log
-// FILE), --out, --run-dir, --config, --set, --force, --json, --plot, --version.
+// What the command lines of all programs share. Common names: INPUT (--data FOLDER, --log FILE),
+// --out, --run-dir, --config, --set, --force, --json, --plot, --version.
 
-/// An option that names a file or a folder; --help shows it as FILE or FOLDER.
+/// An option that names a file or a folder, shown as FILE or FOLDER in --help.
 CLI::Option* AddFile(const std::string& names, std::string* path, const std::string& text,
                      CLI::App* app);
 CLI::Option* AddFolder(const std::string& names, std::string* path, const std::string& text,
@@ -20,15 +20,15 @@ CLI::Option* AddFolder(const std::string& names, std::string* path, const std::s
 /// --force: see OutputRules.
 void AddForce(bool* force, CLI::App* app);
 
-/// One of the words; the message for another one names that which it is near to. Unlike
-/// CLI::IsMember the words are shown below --help's text.
+/// Accepts one of the words; the message for any other word suggests a similar one. Unlike
+/// CLI::IsMember, it lists the words below the text of --help.
 CLI::Validator OneOf(const std::vector<std::string>& words);
 
-/// The data set or log that a program reads: INPUT, --data FOLDER and --log FILE are the same.
+/// The data set or log that a program reads, given as INPUT, --data FOLDER or --log FILE.
 class InputOptions {
  public:
   explicit InputOptions(CLI::App* app);
-  /// After parsing. Throws InputError where it was not given, or more than once.
+  /// Valid after parsing. Throws InputError if it was given not at all or more than once.
   const std::string& path() const;
 
  private:
@@ -38,9 +38,9 @@ class InputOptions {
 };
 
 /// Parses and runs `body`. The app must have the program's name. Adds --version: name, version and
-/// commit. Turns wrong options (a mistyped one is answered with that which it is near to) and
-/// InputError into one line on stderr and kExitBadInput, other exceptions into one line and 1, and
-/// so a standard output that could not be written.
+/// commit. Turns wrong options (suggesting what a mistyped one stands for) and InputError into one
+/// line on stderr and kExitBadInput; other exceptions, and a failure to write to standard output,
+/// into one line and exit code 1.
 int RunProgram(int argc, char** argv, CLI::App* app, const std::function<int()>& body);
 
 }  // namespace airdos

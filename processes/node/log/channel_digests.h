@@ -10,11 +10,12 @@
 
 namespace airdos {
 
-/// Digests of what each channel carried, independent of how the channels interleaved: per channel,
-/// the SHA-256 over the SHA-256 (hexadecimal) of each payload, in order of session (of appearance),
-/// seq and arrival.
+/// Digests of what each channel carried, regardless of how the channels interleaved: per channel,
+/// the SHA-256 over the SHA-256 (hexadecimal) of each payload, ordered by session (in order of
+/// appearance), seq and arrival.
 class ChannelDigests {
  public:
+  /// Number of messages on a channel, and their digest.
   struct Entry {
     std::int64_t num_messages = 0;
     std::string sha256;

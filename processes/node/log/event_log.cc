@@ -21,7 +21,7 @@ namespace {
 constexpr std::array<std::uint8_t, 4> kSyncWord{0xED, 0xA1, 0xDA, 0x01};
 constexpr std::int64_t kHeaderBytes = 28;
 constexpr std::size_t kMaxWrittenChannelBytes = 63;  // LCM_MAX_CHANNEL_NAME_LENGTH
-// LCM's own reader takes that much; other programs' writers do not know the limit above.
+// LCM's own reader accepts this much; other programs may write names above LCM's limit.
 constexpr std::int64_t kMaxChannelBytes = 999;
 
 std::uint64_t ReadBigEndian(const std::uint8_t* bytes, int size) {
@@ -30,8 +30,8 @@ std::uint64_t ReadBigEndian(const std::uint8_t* bytes, int size) {
   return value;
 }
 
-// LCM takes any byte in a name; blanks and what regular expressions use do occur. Control
-// characters do not, and refusing them tells names from what damage left.
+// LCM accepts any byte in a name; blanks and special characters of regular expressions do occur.
+// Control characters do not, so refusing them helps to distinguish names from damaged bytes.
 bool IsOfName(std::uint8_t character) { return character >= 0x20 && character != 0x7f; }
 
 void WriteBigEndian(std::uint64_t value, int size, std::uint8_t* bytes) {
@@ -46,11 +46,11 @@ EventLogReader::EventLogReader(const std::string& path) : path_(path) {
   const auto fail = [&path] {
     throw InputError(path + ": cannot be read: " + std::strerror(errno));
   };
-  // Before it is opened: that would wait for whoever writes into a pipe.
+  // Checked before opening: opening a pipe would wait for its writer.
   if (stat(path.c_str(), &status) != 0) fail();
   if (S_ISDIR(status.st_mode)) throw InputError(path + ": is a folder, not an LCM log");
   if (!S_ISREG(status.st_mode))
-    throw InputError(path + ": is a pipe or a device, not a file: an LCM log is wanted");
+    throw InputError(path + ": is a pipe or a device, not a file: an LCM log is expected");
   file_.reset(std::fopen(path.c_str(), "rb"));
   if (file_ == nullptr || fstat(fileno(file_.get()), &status) != 0) fail();
   num_bytes_ = status.st_size;
@@ -64,7 +64,7 @@ EventLogReader::EventLogReader(const std::string& path) : path_(path) {
   if (first_) return;
   if (LooksLikeText(bytes)) throw InputError(path + ": is a text file, not an LCM log");
   throw InputError(path + ": holds no LCM event (" + std::to_string(num_bytes_) +
-                   " bytes): it is no LCM log, or damaged from end to end");
+                   " bytes): it is not an LCM log, or damaged from end to end");
 }
 
 std::optional<LogEvent> EventLogReader::Next() {
@@ -109,7 +109,7 @@ std::optional<std::int64_t> EventLogReader::FindHeader(std::int64_t from, std::i
                                                        bool is_followed) const {
   constexpr std::int64_t kChunkBytes = 64 << 10;
   std::vector<std::uint8_t> chunk;
-  // Chunks overlap by three bytes so that no sync word falls between two.
+  // Chunks overlap by three bytes so that no sync word is split between two.
   for (std::int64_t start = from; start < to; start += kChunkBytes) {
     const std::int64_t size = std::min(kChunkBytes + 3, num_bytes_ - start);
     chunk.resize(static_cast<std::size_t>(size));
@@ -128,7 +128,7 @@ std::optional<std::int64_t> EventLogReader::FindHeader(std::int64_t from, std::i
 
 std::optional<std::int64_t> EventLogReader::SuccessorBehind(const EventHeader& header) const {
   const std::optional<std::int64_t> next = FindHeader(header.end, num_bytes_, false);
-  // Unsigned, since a damaged number may be the largest there is.
+  // Unsigned, since a damaged number may be the largest possible one.
   const std::uint64_t expected = static_cast<std::uint64_t>(header.number) + 1;
   if (!next || static_cast<std::uint64_t>(HeaderAt(*next)->number) != expected) return std::nullopt;
   return next;
@@ -136,7 +136,7 @@ std::optional<std::int64_t> EventLogReader::SuccessorBehind(const EventHeader& h
 
 void EventLogReader::CountLost(std::int64_t num_bytes, const EventHeader* next) {
   num_bytes_skipped_ += num_bytes;
-  // Loggers number their events; believe it only as far as the skipped bytes could have held them.
+  // Loggers number their events; trust this only as far as the skipped bytes could have held them.
   std::int64_t num_events = 1;
   if (next != nullptr && next->number > last_number_) {
     const std::int64_t most = std::max<std::int64_t>(1, num_bytes / kHeaderBytes);
@@ -158,8 +158,8 @@ std::optional<LogEvent> EventLogReader::ReadEvent() {
       next = FindHeader(offset_ + 1, num_bytes_, false);
     } else {
       if (IsBoundary(header->end)) break;
-      // Either this event's length is damaged (then it swallows events that are whole, or there are
-      // bytes left before the event that has the next number), or the event behind it is.
+      // Either this event's length is damaged (it then includes other intact events, or there are
+      // leftover bytes before the event with the next number), or the following event is.
       next = FindHeader(offset_ + 4, header->end, true);
       if (!next) next = SuccessorBehind(*header);
       if (!next) break;
@@ -187,7 +187,7 @@ std::optional<LogEvent> EventLogReader::ReadEvent() {
 EventLogWriter::EventLogWriter(const std::string& path)
     : path_(path), file_(open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644)) {
   if (file_ < 0) throw InputError(path + ": cannot be created: " + std::strerror(errno));
-  // Emptied only when nobody else writes it: two writers would leave a mixture.
+  // Truncated only once no other writer is active: two writers would leave a mixture.
   struct stat status = {};
   const bool is_file = fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
   const bool is_taken = is_file && flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
@@ -231,8 +231,8 @@ void EventLogWriter::Write(std::int64_t number, std::int64_t utime, const std::s
     if (step < 0 && errno == EINTR) continue;
     if (step <= 0) {
       const std::string reason = step < 0 ? std::strerror(errno) : "nothing was taken";
-      // Half an event at the end would count as damage; where it cannot be cut off, the reader
-      // skips it.
+      // Half an event at the end would count as damage; if it cannot be cut off, the reader skips
+      // it.
       if (num_written > 0 && ftruncate(file_, num_bytes_) != 0)
         Fail("cannot be written or cut: " + reason);
       Fail("cannot be written: " + reason);
@@ -244,9 +244,9 @@ void EventLogWriter::Write(std::int64_t number, std::int64_t utime, const std::s
 }
 
 void EventLogWriter::Sync() {
-  // EINVAL: a pipe or a device such as /dev/null, where there is nothing to wait for.
+  // EINVAL: a pipe or a device such as /dev/null, for which there is nothing to wait.
   if (fdatasync(file_) != 0 && errno != EINVAL && errno != EROFS) {
-    Fail(std::string("cannot be brought to the disk: ") + std::strerror(errno));
+    Fail(std::string("cannot be flushed to disk: ") + std::strerror(errno));
   }
 }
 

@@ -19,15 +19,15 @@ struct Format {
 constexpr char kCompressed[] = "is compressed: unpack it first";
 constexpr char kBag[] =
     "is a ROS bag, not an LCM log: write its images into a folder, or publish them on LCM";
-constexpr char kVideo[] = "is a video, not an LCM log: a stereo pair as images in a folder is read";
-constexpr char kPicture[] = "is an image, not an LCM log: the folder of a sequence is wanted";
+constexpr char kVideo[] = "is a video, not an LCM log: stereo pairs are read as images in folders";
+constexpr char kPicture[] = "is an image, not an LCM log: the folder of a sequence is expected";
 constexpr char kCapture[] =
     "is a capture of network packets, not an LCM log: record with airdos-record or lcm-logger";
 
 constexpr std::array<Format, 26> kFormats{{
     {0, "#ROSBAG"sv, kBag},
     {0, "\x89MCAP"sv, kBag},
-    {0, "SQLite format 3\0"sv, "is a data base (a ROS 2 bag?), not an LCM log"},
+    {0, "SQLite format 3\0"sv, "is a database (a ROS 2 bag?), not an LCM log"},
     {0, "\x1f\x8b"sv, kCompressed},
     {0, "\x28\xb5\x2f\xfd"sv, kCompressed},
     {0,
@@ -48,7 +48,7 @@ constexpr std::array<Format, 26> kFormats{{
     {0, "II*\0"sv, kPicture},
     {0, "MM\0*"sv, kPicture},
     {0, "\x89HDF\r\n\x1a\n"sv, "is an HDF5 file, not an LCM log"},
-    {0, "\x93NUMPY"sv, "is an array of NumPy, not an LCM log"},
+    {0, "\x93NUMPY"sv, "is a NumPy array, not an LCM log"},
     {0, "\xd4\xc3\xb2\xa1"sv, kCapture},
     {0, "\xa1\xb2\xc3\xd4"sv, kCapture},
     {0, "\x0a\x0d\x0d\x0a"sv, kCapture},

@@ -7,14 +7,14 @@
 
 namespace airdos {
 
-/// As many bytes of a file's beginning tell most formats.
+/// This many bytes at the beginning of a file identify most formats.
 inline constexpr std::size_t kForeignFileBytes = 512;
 
-/// What a file is that was given as an LCM log, by its first bytes, and what to do about it: "is a
-/// ROS bag, not an LCM log: …". Empty where the bytes are those of no format that is known here.
+/// Identifies, from its first bytes, a file that was given as an LCM log but is not one, with what
+/// to do about it: "is a ROS bag, not an LCM log: …". Empty if the format is not recognised.
 std::string DescribeForeignFile(const std::vector<std::uint8_t>& first_bytes);
 
-/// Whether the bytes can be read as text.
+/// Whether the bytes look like text.
 bool LooksLikeText(const std::vector<std::uint8_t>& first_bytes);
 
 }  // namespace airdos

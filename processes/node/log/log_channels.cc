@@ -21,7 +21,7 @@ const std::vector<std::string>& OutputChannels() {
   return channels;
 }
 
-/// Letters and digits alone, as capitals.
+/// Letters and digits only, in upper case.
 std::string Bare(const std::string& name) {
   std::string bare;
   for (const char c : name) {
@@ -90,7 +90,7 @@ std::string LogChannels::List() const {
             std::to_string((entry.num_bytes + 1023) / 1024) + " kB)";
   }
   if (others_.num_messages > 0)
-    text += ", " + std::to_string(others_.num_messages) + " messages on still other channels";
+    text += ", " + std::to_string(others_.num_messages) + " messages on further channels";
   return text;
 }
 
@@ -115,8 +115,8 @@ std::vector<std::string> LogChannels::Outputs() const {
 std::string LogChannels::ExplainMissing(const std::string& wanted) const {
   std::string read;
   for (const std::string& name : InputChannels()) read += (read.empty() ? "" : ", ") + name;
-  std::string text =
-      "no message on " + wanted + "; read are the channels " + read + "; the log holds " + List();
+  std::string text = "no message on " + wanted + "; the channels read are " + read +
+                     "; the log contains " + List();
   const std::optional<std::string> like = LookAlike(wanted);
   if (like) {
     text += "; " + *like + " looks like " + wanted + ": publish it under exactly that name, and " +

@@ -8,14 +8,14 @@
 namespace airdos {
 namespace {
 
-constexpr std::size_t kNewestOfCutLog = 16;  // frames that may wait for their partners
-constexpr double kMostOf = 0.8;              // a cause must explain so many
+constexpr std::size_t kNewestOfCutLog = 16;  // frames that may still wait for their partners
+constexpr double kMostOf = 0.8;              // a cause must explain this share
 
 std::string OfAll(std::size_t count, std::size_t all) {
   return std::to_string(count) + " of " + std::to_string(all);
 }
 
-/// " + 1000", " - 3".
+/// A difference as " + 1000" or " - 3".
 std::string Signed(std::int64_t difference) {
   return (difference < 0 ? " - " : " + ") + std::to_string(std::abs(difference));
 }
@@ -33,8 +33,8 @@ std::string Range(const std::vector<Header>& headers) {
   return std::to_string(min->seq) + " to " + std::to_string(max->seq);
 }
 
-/// A difference that most of `num` comparisons gave, if there is one. Differences wrap around, as
-/// hostile numbers would overflow.
+/// The difference found in most of `num` comparisons, if there is one. Differences wrap around,
+/// because hostile numbers would overflow.
 std::optional<std::int64_t> Commonest(const std::map<std::int64_t, std::size_t>& counts,
                                       std::size_t num) {
   const auto best =
@@ -55,17 +55,17 @@ bool IsThousandfold(std::int64_t a, std::int64_t b) {
   return std::abs(ratio - 1e3) < 1 || std::abs(ratio - 1e-3) < 1e-6;
 }
 
-/// Compares the numbers of messages of one capture time.
+/// Compares the numbers of messages with the same capture time.
 struct ByTime {
   std::size_t num_matched = 0;
-  std::optional<std::int64_t> difference;  // of their numbers
+  std::optional<std::int64_t> difference;  // between their numbers
 };
 
 ByTime JoinByTime(const std::vector<Header>& lefts, const std::vector<Header>& others) {
   std::map<std::int64_t, std::int64_t> seq_at;
   for (const Header& left : lefts) seq_at.emplace(left.utime, left.seq);
   ByTime result;
-  if (2 * seq_at.size() < lefts.size()) return result;  // times that repeat tell nothing
+  if (2 * seq_at.size() < lefts.size()) return result;  // repeated times are not informative
   std::map<std::int64_t, std::size_t> counts;
   for (const Header& other : others) {
     const auto left = seq_at.find(other.utime);
@@ -121,8 +121,8 @@ void LogPairing::CheckNumbers(std::vector<Remark>* remarks) const {
     if (headers.size() < 3 || SessionsOf(headers).size() < headers.size()) continue;
     remarks->push_back({true, "log.numbers", name, std::nullopt,
                         "each of the " + std::to_string(headers.size()) +
-                            " messages has a session of its own: a session is one run of the "
-                            "source, its number stays until the source starts again"});
+                            " messages has its own session: a session is one run of the "
+                            "source, and its number stays the same until the source restarts"});
   }
 }
 
@@ -137,9 +137,9 @@ std::string LogPairing::WhyApart(const std::string& channel) const {
   if (!shares_session) {
     return "its session is " + std::to_string(*sessions.begin()) + ", that of CAMERA_LEFT " +
            std::to_string(*left_sessions.begin()) +
-           ": one source must give all messages of its images one session";
+           ": a source must give all messages of its images the same session";
   }
-  const std::string remedy = "give every message of one image one number (seq)";
+  const std::string remedy = "give all messages of one image the same number (seq)";
   const ByTime by_time = JoinByTime(lefts, others);
   if (2 * by_time.num_matched >= std::min(lefts.size(), others.size())) {
     if (!by_time.difference) return "capture times agree, numbers do not: " + remedy;
@@ -171,12 +171,13 @@ void LogPairing::CheckPartners(const std::string& channel, const std::map<Key, H
   const bool is_truth = channel == channel::kGroundTruth;
   if (num_alone > 0) {
     const bool has_none = num_alone == lefts.size();
-    // Without a right image there is no measurement; frames without the others do with less.
+    // Without a right image there is no measurement; without the other inputs a frame has just
+    // less.
     const bool is_error =
         !is_truth &&
         (has_none || (channel == channel::kCameraRight && 2 * num_alone > lefts.size()));
     std::string text = OfAll(num_alone, lefts.size()) +
-                       " left images have no message of their number and session here";
+                       " left images have no message with their number and session here";
     text += has_none ? ": " + WhyApart(channel) : ", the first is " + std::to_string(*first);
     if (!has_none && is_error) text += ": " + WhyApart(channel);
     remarks->push_back({is_error, "log.partners", channel, std::nullopt, text});
@@ -185,7 +186,7 @@ void LogPairing::CheckPartners(const std::string& channel, const std::map<Key, H
   if (is_truth || is_cut || num_extra == 0) return;
   remarks->push_back(
       {false, "log.partners", channel, std::nullopt,
-       OfAll(num_extra, keys.size()) + " messages have a number that CAMERA_LEFT has not"});
+       OfAll(num_extra, keys.size()) + " messages have a number that CAMERA_LEFT does not have"});
 }
 
 void LogPairing::CheckTimes(const std::string& channel, const std::map<Key, Header>& lefts,
@@ -206,7 +207,7 @@ void LogPairing::CheckTimes(const std::string& channel, const std::map<Key, Head
   }
   if (num_other == 0) return;
   std::string text = "has another capture time (" + std::to_string(first->first.utime) +
-                     ") than CAMERA_LEFT of this number (" + std::to_string(first->second.utime) +
+                     ") than CAMERA_LEFT with this number (" + std::to_string(first->second.utime) +
                      ")";
   if (num_other > 1) text += ", and so have " + OfAll(num_other, num_joined);
   const ByTime by_time = JoinByTime(Of(channel::kCameraLeft), Of(channel));
@@ -216,7 +217,7 @@ void LogPairing::CheckTimes(const std::string& channel, const std::map<Key, Head
              *by_time.difference != 0) {
     text += ": " + WhyApart(channel);
   } else if (const auto always = Commonest(differences_us, num_other); always && num_other > 1) {
-    text += ", by" + Signed(*always) + " us: give every message of one image one capture time";
+    text += ", by" + Signed(*always) + " us: give all messages of one image the same capture time";
   }
   remarks->push_back({true, "log.utime", channel, first->first.seq, text});
 }

@@ -10,7 +10,7 @@
 namespace airdos {
 namespace {
 
-constexpr std::size_t kSessionsRemembered = 8;  // the last of one may come among those of the next
+constexpr std::size_t kSessionsRemembered = 8;  // one's last message may be in the next one
 
 // A frame of another session is newer, whatever its number.
 bool IsNewer(const Header& a, const Header& b) { return a.session != b.session || a.seq > b.seq; }
@@ -46,7 +46,8 @@ LogSource::LogSource(const std::string& path, std::int64_t first_seq, std::int64
   const bool wants_features = inputs == LogInputs::kFeatures;
   const std::string missing =
       ExplainIfMissing(path, wants_features ? channel::kStaticFeatures : channel::kCameraLeft);
-  if (!missing.empty()) throw InputError(path + ": holds no message for the processes: " + missing);
+  if (!missing.empty())
+    throw InputError(path + ": contains no message for the processes: " + missing);
 }
 
 std::optional<LogSource::Input> LogSource::ReadInput() {
@@ -64,13 +65,13 @@ std::optional<LogSource::Input> LogSource::ReadInput() {
 }
 
 bool LogSource::IsCredible(const Header& header) const {
-  if (header.seq < 0) return false;  // receivers would not take it
+  if (header.seq < 0) return false;  // receivers would reject it
   for (const Header& newest : newest_) {
     if (newest.session == header.session && header.seq - 1 <= newest.seq) return true;
   }
   if (ahead_.empty()) return true;
   return std::any_of(ahead_.begin(), ahead_.end(), [&header](const Input& later) {
-    // Neither negative, so the difference fits.
+    // Neither is negative, so the difference does not overflow.
     return later.header.session == header.session && later.header.seq >= header.seq &&
            later.header.seq - header.seq <= FrameJoiner::kMaxAhead;
   });
@@ -118,7 +119,7 @@ std::vector<Envelope> LogSource::NextFrame() {
   const bool is_first = !next_;
   if (is_first) next_ = NextInput();
   if (is_first && !next_) {
-    throw InputError(reader_.path() + ": holds no message for the processes: none of " +
+    throw InputError(reader_.path() + ": contains no message for the processes: none of " +
                      (inputs_ == LogInputs::kFeatures ? "STATIC_FEATURES" : "CAMERA_LEFT") +
                      " and the like in the range of image numbers");
   }
@@ -154,11 +155,12 @@ void LogSource::NoteDamage() {
   }
   if (num_without_header_ > 0) {
     notes_.push_back(reader_.path() + ": " + std::to_string(num_without_header_) +
-                     " messages too short to have a header left out");
+                     " messages skipped: too short for a header");
   }
   if (num_incredible_ > 0) {
-    notes_.push_back(reader_.path() + ": " + std::to_string(num_incredible_) +
-                     " messages left out: session or image number fit to nothing around them");
+    notes_.push_back(
+        reader_.path() + ": " + std::to_string(num_incredible_) +
+        " messages skipped: their session or image number does not fit their neighbours");
   }
 }
 

@@ -19,71 +19,74 @@
 
 namespace airdos {
 
-/// What every message of ours starts with, without knowing its type; nothing if the payload is too
-/// short.
+/// The header common to all our messages, read without knowing the type; nothing if the payload is
+/// too short.
 std::optional<Header> PeekHeader(const void* data, std::size_t size);
-/// Puts another one in its place; nothing is done if the payload is too short.
+/// Replaces the header; does nothing if the payload is too short.
 void WriteHeader(const Header& header, void* data, std::size_t size);
 
 /// Source of a run's input, frame by frame.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
-  /// Messages of the next frame, in the order in which they are to be published; empty at the end.
+  /// The next frame's messages, in the order in which to publish them; empty at the end.
   virtual std::vector<Envelope> NextFrame() = 0;
-  /// How much of the source was handed out, 0..1.
+  /// The fraction of the source that has been handed out, 0..1.
   virtual double fraction_done() const = 0;
-  /// What people should know about the source, a line each; given once.
+  /// What the user should know about the source, one line each; each returned once.
   virtual std::vector<std::string> TakeNotes() = 0;
 };
 
-/// Which of a log's messages are the input of a run.
+/// Which messages of a log are the input of a run.
 enum class LogInputs {
-  kImages,    ///< those from outside
-  kFeatures,  ///< also what the frontend and the human tracker made of them
+  kImages,    ///< those that come from outside
+  kFeatures,  ///< also the output of frontend and human tracker
 };
 
 /// The input channels of a log, in the log's order. A frame ends before the first message of a
-/// newer one; messages that come late travel with the frame in which they came.
+/// newer one; messages that come late are handed out with the frame in which they came.
 ///
-/// Messages without a header are left out. So are those whose header cannot be right: one flipped
-/// bit of a session or an image number, taken for true, would make all that follows late. A message
-/// of a new session, or of an image further ahead than the next one of its session, counts only
-/// if one of the next kLookahead messages agrees (the same session, not an older image), or if none
-/// follows. TakeNotes() tells how many were left out, and at the end which channels do not go with
-/// CAMERA_LEFT (LogPairing): the processes would wait for their messages in vain.
+/// Messages without a header are skipped, and so are those whose header cannot be right: a single
+/// flipped bit in a session or image number, if trusted, would make everything that follows late. A
+/// message of a new session, or of an image further ahead than the next one of its session, counts
+/// only if one of the next kLookahead messages agrees with it (same session, not an older image),
+/// or if no message follows. TakeNotes() reports how many were skipped and, at the end, which
+/// channels do not match CAMERA_LEFT (LogPairing), so that the processes would wait for their
+/// messages in vain.
 class LogSource : public FrameSource {
  public:
   static constexpr std::size_t kLookahead = 16;
-  /// A frame is handed out in pieces of at most so many messages.
+  /// A frame is handed out in pieces of at most this many messages.
   static constexpr std::size_t kMaxFrameMessages = 100;
 
-  /// Frames with first_seq <= seq <= last_seq; calibrations from before are kept. Throws InputError
-  /// where the file is no log, or has not one image (one message of STATIC_FEATURES, if those are
-  /// wanted): then it says what it has.
+  /// Frames with first_seq <= seq <= last_seq; calibrations from before are kept. Throws
+  /// InputError, listing the log's contents, if the file is not a log or has no image (or no
+  /// message of STATIC_FEATURES, if those are the input).
   explicit LogSource(const std::string& path,
                      std::int64_t first_seq = std::numeric_limits<std::int64_t>::min(),
                      std::int64_t last_seq = std::numeric_limits<std::int64_t>::max(),
                      LogInputs inputs = LogInputs::kImages);
 
-  /// Gives the sessions of the log new numbers: session, session + 1, … in their order, so that it
-  /// can be played into processes that have seen it already. Without it bytes are as in the log.
+  /// Gives the sessions of the log new numbers, session, session + 1, … in their order, so that it
+  /// can be played to processes that have already seen it. Without this call the bytes are as in
+  /// the log.
   void RenumberSessions(std::int64_t session) { first_session_ = session; }
 
-  /// Throws InputError where the log holds no message that it could give.
+  /// Throws InputError if the log contains no usable message.
   std::vector<Envelope> NextFrame() override;
   double fraction_done() const override;
   std::vector<std::string> TakeNotes() override { return std::exchange(notes_, {}); }
 
  private:
+  /// A message and its header.
   struct Input {
     Header header;
     LogEvent event;
   };
 
-  /// The next message that is input, whatever its header says.
+  /// The next input message, whatever its header.
   std::optional<Input> ReadInput();
-  /// The next one whose header may be right.
+  /// The next input message with a credible header.
   std::optional<Input> NextInput();
   bool IsCredible(const Header& header) const;
   void Remember(const Header& header);
@@ -97,14 +100,14 @@ class LogSource : public FrameSource {
   LogInputs inputs_;
   std::int64_t num_without_header_ = 0;
   std::int64_t num_incredible_ = 0;
-  std::deque<Input> ahead_;  // read, not yet looked at
+  std::deque<Input> ahead_;  // read, but not yet examined
   std::vector<std::string> notes_;
-  std::deque<Header> newest_;  // of what was credible, one a session
-  Header frame_;               // of the frame that is handed out
-  std::optional<Input> next_;  // first message of the frame to come
+  std::deque<Header> newest_;  // newest credible header of each session
+  Header frame_;               // header of the frame being handed out
+  std::optional<Input> next_;  // first message of the next frame
   LogPairing pairing_;
-  std::optional<std::int64_t> first_session_;        // of the new ones
-  std::map<std::int64_t, std::int64_t> session_of_;  // the new one of each of the log
+  std::optional<std::int64_t> first_session_;        // first of the new session numbers
+  std::map<std::int64_t, std::int64_t> session_of_;  // new number of each session of the log
   bool is_at_end_ = false;
 };
 

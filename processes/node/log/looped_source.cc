@@ -24,7 +24,7 @@ std::vector<Envelope> LoopedSource::NextFrame() {
 }
 
 void LoopedSource::Shift(Envelope* message) {
-  if (num_loops_ == 1) return;  // a log may hold several sessions
+  if (num_loops_ == 1) return;  // a log may contain several sessions
   const auto header = PeekHeader(message->payload.data(), message->payload.size());
   if (!header) return;
   if (!first_) first_ = last_ = *header;

@@ -13,20 +13,20 @@
 
 namespace airdos {
 
-/// A source again and again as one long session: capture times and image numbers go on where the
-/// time before ended (a mean frame interval later), everything else is as it was. The scene jumps
-/// where it starts again. For long runs: what grows with their length shows. Whatever session the
-/// messages had, all have that of the first. Played once, nothing is changed.
+/// Plays a source repeatedly as one long session: capture times and image numbers continue where
+/// the previous loop ended (a mean frame interval later), and everything else is unchanged. The
+/// scene jumps at each restart. Meant for long runs, to reveal what grows with their length. All
+/// messages get the session of the first one. With a single loop, nothing is changed.
 class LoopedSource : public FrameSource {
  public:
   using Open = std::function<std::unique_ptr<FrameSource>()>;
 
-  /// `open` opens the source from its beginning; called num_loops times.
+  /// `open` opens the source from its beginning; it is called num_loops times.
   LoopedSource(Open open, int num_loops);
 
   std::vector<Envelope> NextFrame() override;
   double fraction_done() const override;
-  /// Each once, however often it is played.
+  /// Each note once, however often the source is played.
   std::vector<std::string> TakeNotes() override;
 
  private:
@@ -37,7 +37,7 @@ class LoopedSource : public FrameSource {
   int loop_ = 0;
   std::unique_ptr<FrameSource> source_;
   std::optional<Header> first_;
-  Header last_;  // newest of the first time
+  Header last_;  // newest header of the first loop
   Header shift_;
   std::set<std::string> said_;
 };

@@ -1,9 +1,11 @@
 #ifndef AIRDOS_PROCESSES_NODE_MESSAGE_CHANNELS_H_
 #define AIRDOS_PROCESSES_NODE_MESSAGE_CHANNELS_H_
 
+// Installed as airdos/channels.h.
+
 namespace airdos::channel {
 
-// One type and one publisher each: lcmtypes/README.md.
+// Each channel has one type and one publisher: lcmtypes/README.md.
 inline constexpr char kCameraLeft[] = "CAMERA_LEFT";
 inline constexpr char kCameraRight[] = "CAMERA_RIGHT";
 inline constexpr char kCalibration[] = "CALIBRATION";

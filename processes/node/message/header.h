@@ -17,10 +17,25 @@ Header HeaderOf(const Message& message) {
   return {message.utime, message.seq, message.session};
 }
 
-/// First of the running numbers (landmarks, people) that a process gives which hears a session from
-/// image `first_seq` on, if it makes fewer than `most_per_frame` of them in a frame: 1 at the start
-/// of a session. A process that was killed and started again so never uses a number that the one
-/// before gave, and the others still know.
+template <class Message>
+void SetHeader(const Header& header, Message* message) {
+  message->utime = header.utime;
+  message->seq = header.seq;
+  message->session = header.session;
+}
+
+/// A message with this header; everything else is zero.
+template <class Message>
+Message MessageOf(const Header& header) {
+  Message message{};
+  SetHeader(header, &message);
+  return message;
+}
+
+/// First of the running numbers (of landmarks or people) that a process assigns if it receives a
+/// session from image `first_seq` on and assigns fewer than `most_per_frame` of them per frame; 1
+/// at the start of a session. A process that was killed and restarted thus never reuses a number of
+/// its predecessor, which other processes still remember.
 inline std::int64_t FirstRunningNumber(std::int64_t first_seq, std::int64_t most_per_frame) {
   return 1 + first_seq * most_per_frame;
 }

@@ -11,9 +11,10 @@
 namespace airdos {
 namespace {
 
-constexpr char kDoesNotDecode[] = "the image does not decode";
+constexpr char kDoesNotDecode[] = "the image cannot be decoded";
 
-/// What the file claims is looked at before the decoder makes room for it. Empty: it may decode.
+/// Checks what the file claims before the decoder allocates memory for it. Empty if it may be
+/// decoded.
 std::string WhyNoFile(const image_t& message) {
   const std::vector<std::uint8_t>& data = message.data;
   const std::string why = WhyNoPicture(data.data(), data.size());
@@ -24,7 +25,8 @@ std::string WhyNoFile(const image_t& message) {
                                            message.width, message.height);
   }
   if (header.bits == 16) {
-    return "the image has 16 bits a sample, but their range is that of the sequence: send 8 bits";
+    return "the image has 16 bits per sample, but the range depends on the whole sequence: send 8 "
+           "bits";
   }
   return "";
 }
@@ -36,18 +38,18 @@ std::optional<cv::Mat> DecodeFile(const image_t& message, int flags, std::string
   try {
     const cv::Mat file(1, static_cast<int>(message.data.size()), CV_8UC1,
                        const_cast<unsigned char*>(message.data.data()));
-    // Pixels as they are stored: left and right must not differ by a wish in their headers.
+    // Pixels as stored: left and right must not differ because of an orientation in a header.
     cv::Mat image = cv::imdecode(file, flags | cv::IMREAD_IGNORE_ORIENTATION);
     if (image.empty() || image.cols != message.width || image.rows != message.height) {
       return std::nullopt;
     }
     return image;
-  } catch (const cv::Exception&) {  // e.g. a kind of file that OpenCV does not know
+  } catch (const cv::Exception&) {  // e.g. a format that OpenCV does not support
     return std::nullopt;
   }
 }
 
-// Pixels without padding; `type` is CV_8UC1 or CV_8UC3.
+// Wraps pixels without padding; `type` is CV_8UC1 or CV_8UC3.
 std::optional<cv::Mat> WrapRaw(const image_t& message, int type) {
   if (message.width <= 0 || message.height <= 0) return std::nullopt;
   const std::size_t num_bytes = static_cast<std::size_t>(message.width) *

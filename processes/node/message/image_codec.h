@@ -11,21 +11,20 @@
 
 namespace airdos {
 
-/// Pixels of an image message, width x height as its header says: 8-bit grey (CV_8UC1) or
-/// blue-green-red (CV_8UC3), whatever the encoding, as they are stored (EXIF's wish to turn them is
-/// ignored). Nothing where the bytes do not decode or are cut short, where the file has another
-/// size than the message says (looked at before it is decoded, see common/util/image_header.h), 16
-/// bits a sample, or where the encoding is unknown; `reason` then says which, "the image is cut
-/// short
-/// ...". A result never points into the message.
+/// Decodes an image message to pixels, width x height as in the message: 8-bit grey (CV_8UC1) or
+/// BGR (CV_8UC3), whatever the encoding, as stored (the EXIF orientation is ignored). Nothing if
+/// the bytes cannot be decoded or are truncated, if the file's size differs from the message's
+/// (checked before decoding, see common/util/image_header.h), if there are 16 bits per sample, or
+/// if the encoding is unknown; `reason` then says why, for example "the image is cut short ...".
+/// The result never points into the message.
 std::optional<cv::Mat> DecodeGray(const image_t& message, std::string* reason = nullptr);
 std::optional<cv::Mat> DecodeColor(const image_t& message, std::string* reason = nullptr);
 
-/// A mask message as common/dataset/mask_file.h reads it; nothing in the same cases, where that
-/// refuses the kind of mask, or where it holds none: `reason` then says which.
+/// Decodes a mask message like common/dataset/mask_file.h. Nothing in the same cases, if that
+/// refuses the format, or if there is no mask; `reason` then says why.
 std::optional<PersonMask> DecodeMaskMessage(const person_mask_t& message,
                                             std::string* reason = nullptr);
-/// Its pixels alone (CV_8UC1, 255 = a person, 0 = background).
+/// Only its pixels (CV_8UC1, 255 = person, 0 = background).
 std::optional<cv::Mat> DecodeMask(const person_mask_t& message, std::string* reason = nullptr);
 
 }  // namespace airdos

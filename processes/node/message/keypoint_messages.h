@@ -11,16 +11,16 @@
 
 namespace airdos {
 
-/// What person_keypoints_t::layout says; nothing where it is unknown.
+/// The layout in person_keypoints_t::layout; nothing if it is unknown.
 std::optional<KeypointLayout> LayoutOf(int layout);
-/// The other way round.
+/// The inverse.
 std::int8_t ToMessageLayout(KeypointLayout layout);
 
-/// The people of a message that has passed Validate(), with the keypoints as they were detected.
+/// The people in a message that has passed Validate(), with the keypoints as detected.
 std::vector<std::vector<BodyKeypoint>> ToDetections(const person_keypoints_t& message);
 
-/// The people of a message that has passed Validate(), with the joints of our body model. Nobody
-/// where the layout is unknown.
+/// The people in a message that has passed Validate(), with the joints of our body model. Nobody if
+/// the layout is unknown.
 std::vector<BodyKeypoints> ToPeople(const person_keypoints_t& message);
 
 }  // namespace airdos

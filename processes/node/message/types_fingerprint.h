@@ -7,12 +7,12 @@
 
 namespace airdos {
 
-/// Each message type that travels on a channel of its own, and LCM's fingerprint of it: what stands
-/// at the head of each of its messages. It covers members, their types and dimensions.
+/// Each message type with its own channel, and its LCM fingerprint, which starts each of its
+/// messages and covers members, their types and dimensions.
 const std::map<std::string, std::int64_t>& MessageTypes();
 
-/// 16 hexadecimal digits of SHA-256 over names and fingerprints of MessageTypes(). Two programs
-/// that say the same understand each other's messages.
+/// 16 hexadecimal digits of the SHA-256 over names and fingerprints in MessageTypes(). Programs
+/// that report the same value understand each other's messages.
 const std::string& TypesFingerprint();
 
 }  // namespace airdos

@@ -11,12 +11,12 @@
 namespace airdos {
 namespace {
 
-// Far above anything that makes sense, far below what hurts.
+// Far above anything sensible, far below anything harmful.
 constexpr double kMaxSeq = 1099511627776.0;          // 2^40
 constexpr double kMaxInt64 = 4611686018427387904.0;  // 2^62
 constexpr int kMaxImageSize_px = 8192;
 constexpr int kMaxPeople = 200;
-constexpr int kMaxFeatures = 5000;  // as many as frontend.yaml may ask for
+constexpr int kMaxFeatures = 5000;  // the maximum that frontend.yaml allows
 constexpr int kMaxLandmarks = 20000;
 constexpr int kMaxParts = 64;
 constexpr int kMaxFrames = 1000;
@@ -24,12 +24,12 @@ constexpr int kMaxChannels = 100;
 constexpr int kMaxWarnings = 100;
 constexpr std::size_t kMaxTextBytes = 1000;
 constexpr double kMaxPixel = 1e5;
-constexpr double kMinSigma_px = 1e-4;  // its inverse square must not swallow all other weights
+constexpr double kMinSigma_px = 1e-4;  // its inverse square must not dwarf all other weights
 constexpr double kMaxLength_m = 1e7;
 constexpr double kMaxVariance_m2 = 1e12;
 constexpr double kQuaternionTolerance = 1e-3;
 
-/// Collects the first reason why a message makes no sense.
+/// Records the first reason why a message is invalid.
 class Checker {
  public:
   template <class Message>
@@ -40,7 +40,7 @@ class Checker {
 
   template <class Number>
   void Range(const char* field, Number value, double min, double max) {
-    // The negation makes NaN fail.
+    // Negated so that NaN fails.
     if (!(static_cast<double>(value) >= min && static_cast<double>(value) <= max)) {
       Fail(field, value, min, max);
     }
@@ -74,7 +74,7 @@ class Checker {
   void Position(const char* field, const double (&position)[3]) {
     for (const double value : position) Range(field, value, -kMaxLength_m, kMaxLength_m);
   }
-  /// Ids are in [0, end) and none comes twice.
+  /// Ids are in [0, end) and unique.
   template <class Numbers>
   void Ids(const char* field, const Numbers& values, int end) {
     std::uint64_t seen = 0;
@@ -88,7 +88,7 @@ class Checker {
       seen |= bit;
     }
   }
-  /// A zero byte within would make the text another one in C, where LCM encodes it.
+  /// A zero byte would end the text early in C, where LCM encodes it.
   void Text(const char* field, const std::string& text) {
     if (text.size() > kMaxTextBytes) Fail(field, text.size(), "letters are too many");
     if (text.find('\0') != std::string::npos) Fail(field, text.size(), "letters with a zero in it");
@@ -112,7 +112,7 @@ class Checker {
   void Fail(const char* field, Value value, double min, double max) {
     if (!reason_.empty()) return;
     std::ostringstream why;
-    why << "must lie between " << min << " and " << max;
+    why << "must be between " << min << " and " << max;
     Fail(field, value, why.str());
   }
 
@@ -170,7 +170,7 @@ std::string Validate(const image_t& message) {
   Checker check(message);
   CheckImageSize(message.width, message.height, &check);
   check.Range("encoding", message.encoding, image_t::ENCODING_JPEG, image_t::ENCODING_RAW_BGR8);
-  if (!check.reason().empty()) return check.reason();  // of such a size no bytes can be told
+  if (!check.reason().empty()) return check.reason();  // the size in bytes would be undefined
   const std::int64_t num_pixels = std::int64_t{message.width} * message.height;
   if (message.encoding == image_t::ENCODING_RAW_GRAY8) check.Bytes(message.num_bytes, num_pixels);
   if (message.encoding == image_t::ENCODING_RAW_BGR8) {
@@ -188,11 +188,12 @@ std::string Validate(const stereo_calibration_t& message) {
   }
   check.Range("baseline_m", message.baseline_m, 0, 1000);
   if (!ToStereoCamera(message).IsValid()) {
-    check.Fail("fx_px", message.fx_px,
-               "and the other numbers are no camera: all must be above 0 and the principal point "
-               "in the image");
+    check.Fail(
+        "fx_px", message.fx_px,
+        "and the other numbers are not a camera: all must be above 0 and the principal point "
+        "in the image");
   }
-  // A view of more than 178 degrees, or a baseline of less than a millimetre, is an error.
+  // A field of view of more than 178 degrees, or a baseline of less than a millimetre, is an error.
   check.Range("fx_px", message.fx_px, 0.01 * message.width, kMaxPixel);
   check.Range("fy_px", message.fy_px, 0.01 * message.height, kMaxPixel);
   check.Range("baseline_m", message.baseline_m, 1e-3, 1000);
@@ -205,7 +206,7 @@ std::string Validate(const person_keypoints_t& message) {
               person_keypoints_t::LAYOUT_HALPE26);
   check.Count("num_people", message.num_people, kMaxPeople);
   constexpr int kJointsOfLayout[] = {0, 18, 17, 26};
-  // Of nobody the number of joints says nothing.
+  // If there are no people, the number of joints means nothing.
   if (check.reason().empty() && message.num_people > 0 &&
       message.num_joints != kJointsOfLayout[message.layout]) {
     check.Fail("num_joints", message.num_joints, "does not agree with the layout");
@@ -255,7 +256,7 @@ std::string Validate(const static_features_t& message) {
   check.Ranges("u_left_px", message.u_left_px, -kMaxPixel, kMaxPixel);
   check.Ranges("v_px", message.v_px, -kMaxPixel, kMaxPixel);
   for (std::size_t i = 0; i < message.u_right_px.size(); ++i) {
-    if (message.has_right[i] == 0) continue;  // then it means nothing
+    if (message.has_right[i] == 0) continue;  // then u_right means nothing
     check.Range("u_right_px", message.u_right_px[i], -kMaxPixel, kMaxPixel);
   }
   check.Ranges("has_right", message.has_right, 0, 1);

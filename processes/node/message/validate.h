@@ -17,8 +17,8 @@
 
 namespace airdos {
 
-/// Why a message that decoded makes no sense (sizes, ranges, NaN, ids), or an empty text. Two in
-/// five messages with a flipped bit still decode, so every message passes here before a node sees
+/// Why a decoded message is invalid (sizes, ranges, NaN, ids), or an empty text. Two out of five
+/// messages with a flipped bit still decode, so every message is checked here before a node sees
 /// it.
 std::string Validate(const image_t& message);
 std::string Validate(const stereo_calibration_t& message);

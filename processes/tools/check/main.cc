@@ -1,4 +1,4 @@
-// airdos-check: whether a folder or a log can be used, before it is.
+// airdos-check: checks whether a folder or a log can be used, before using it.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -11,7 +11,8 @@
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Says what is wrong with a recorded sequence or an LCM log before it is used: one line a "
+      "Reports what is wrong with a recorded sequence or an LCM log before it is used: one line "
+      "per "
       "finding. Exit code 0: it can be used; 1: there are errors; 2: wrong arguments.",
       "airdos-check");
   std::string json_path;
@@ -19,14 +20,14 @@ int main(int argc, char** argv) {
   airdos::CheckOptions options;
   const airdos::InputOptions input_options(&app);
   bool is_quick = false;
-  app.add_flag("--quick", is_quick, "only what replay and player look at before they start");
-  app.add_flag("--all", options.all, "look at the pictures of all frames");
+  app.add_flag("--quick", is_quick, "only what replay and player check before they start");
+  app.add_flag("--all", options.all, "check the pictures of all frames");
   airdos::AddCalibrationOption(&app, &options.calibration);
-  app.add_option("--max-frames", options.max_frames, "pictures are looked at in so many frames")
+  app.add_option("--max-frames", options.max_frames, "number of frames whose pictures are checked")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app.add_option("--odometry-frames", options.odometry_frames,
-                 "frames of visual odometry to compare the ground truth with; 0: none")
+                 "frames of visual odometry to compare with the ground truth; 0: none")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   airdos::AddFile("--json", &json_path, "file to write the findings to", &app);

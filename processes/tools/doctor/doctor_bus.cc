@@ -1,10 +1,10 @@
 #include "processes/tools/doctor/doctor_bus.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 #include <vector>
 
+#include "common/util/format.h"
 #include "processes/node/live/lcm_transport.h"
 #include "processes/node/live/process_usage.h"
 #include "processes/node/message/channels.h"
@@ -17,26 +17,22 @@ namespace {
 constexpr char kChannel[] = "AIRDOS_DOCTOR";
 constexpr std::size_t kCameraBytes = 90000;  // a JPEG image of 1226 x 370 px
 constexpr double kCameraPeriod_s = 1.0 / 30;
-constexpr double kLastArrival_s = 0.5;  // for messages still on their way at the end
+constexpr double kLastArrival_s = 0.5;  // waits for messages still in transit at the end
 constexpr std::size_t kMaxBytes = 131072;
 
-/// What a test message starts with.
+/// The start of a test message.
 struct Stamp {
   std::int64_t number = 0;
   std::int64_t utime = 0;
 };
 
-std::string Fixed(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.1f", value);
-  return text;
-}
+std::string Fixed(double value) { return Format("%.1f", value); }
 
 std::string NameOf(const process_status_t& status) {
   return status.process + " (" + std::to_string(status.pid) + ")";
 }
 
-/// "CAMERA_LEFT 30/s, STATUS 4/s".
+/// Lists rates, such as "CAMERA_LEFT 30/s, STATUS 4/s".
 std::string Describe(const BusTraffic& traffic) {
   std::string text;
   for (const auto& [name, channel] : traffic.channels) {
@@ -49,7 +45,7 @@ std::string Describe(const BusTraffic& traffic) {
 Diagnosis JudgePort(const MulticastUrl& url, const BusTraffic& traffic) {
   const std::string port = "port " + std::to_string(url.port);
   if (traffic.channels.empty()) {
-    return {Health::kOk, "bus.port", "nobody speaks on " + port, ""};
+    return {Health::kOk, "bus.port", "nobody sends on " + port, ""};
   }
   const std::string other = "--lcm-url '" + WithPort(url, url.port + 1) + "' for another run";
   std::string twins;
@@ -71,12 +67,12 @@ void JudgeProcess(const process_status_t& status, const std::string& own_version
     result->push_back({Health::kFail, "bus.types",
                        NameOf(status) + " was built with other message types (" +
                            status.types_fingerprint + ", here " + own_fingerprint + ")",
-                       "build and install all programs from one source"});
+                       "build and install all programs from the same source"});
   } else if (status.version != own_version) {
     result->push_back(
         {Health::kWarn, "bus.version",
-         NameOf(status) + " is of version " + status.version + ", this of " + own_version,
-         "build and install all programs from one source"});
+         NameOf(status) + " has version " + status.version + ", this program " + own_version,
+         "build and install all programs from the same source"});
   }
   if (status.state == process_status_t::STATE_STALLED) {
     result->push_back(
@@ -136,15 +132,17 @@ Diagnoses JudgeTraffic(const MulticastUrl& url, const BusTraffic& traffic,
                       "smaller or JPEG images, below 128 kB"});
   }
   if (traffic.num_strange_status > 0) {
-    result.push_back({Health::kFail, "bus.types",
-                      std::to_string(traffic.num_strange_status) +
-                          " STATUS messages do not decode: somebody was built with other types",
-                      "build and install all programs from one source"});
+    result.push_back(
+        {Health::kFail, "bus.types",
+         std::to_string(traffic.num_strange_status) +
+             " STATUS messages cannot be decoded: some program was built with other types",
+         "build and install all programs from the same source"});
   }
   if (traffic.processes.empty()) {
     result.push_back(
         {Health::kOk, "bus.processes",
-         "no process says STATUS; here version " + own_version + ", types " + own_fingerprint, ""});
+         "no process publishes STATUS; here version " + own_version + ", types " + own_fingerprint,
+         ""});
     return result;
   }
   std::string names;
@@ -161,7 +159,7 @@ RoundTrip MeasureRoundTrip(const std::string& url, double duration_s) {
   LcmTransport receiver(url);
   std::vector<double> latencies_ms;
   receiver.Subscribe(kChannel, [&](const void* data, std::size_t size, std::int64_t receive_utime) {
-    if (size != kCameraBytes) return;  // another doctor of another version
+    if (size != kCameraBytes) return;  // another doctor of a different version
     Stamp stamp;
     std::memcpy(&stamp, data, sizeof(stamp));
     latencies_ms.push_back(1e-3 * static_cast<double>(receive_utime - stamp.utime));
@@ -207,7 +205,7 @@ Diagnoses JudgeRoundTrip(const RoundTrip& trip) {
   if (num_lost > 0) {
     const bool is_bad = 100 * num_lost > trip.num_sent;
     return {{is_bad ? Health::kFail : Health::kWarn, "bus.round_trip", what,
-             "sudo sysctl -w net.core.rmem_max=4194304 and less load"}};
+             "sudo sysctl -w net.core.rmem_max=4194304 and reduce the load"}};
   }
   if (trip.latency_p99_ms > 1e3 * kCameraPeriod_s) {
     return {

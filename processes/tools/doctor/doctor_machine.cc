@@ -7,6 +7,8 @@
 #include <memory>
 #include <system_error>
 
+#include "common/util/format.h"
+
 namespace airdos {
 namespace {
 
@@ -15,7 +17,7 @@ namespace fs = std::filesystem;
 constexpr double kRate_hz = 30;
 constexpr double kLogMbPerFrame = 0.25;  // two JPEG images of 90 kB, mask, keypoints, results
 constexpr double kMapMbPerFrame = 0.02;  // crossings of 100 frames: 0.01
-constexpr double kMinLog_min = 10;       // less is a warning
+constexpr double kMinLog_min = 10;       // less causes a warning
 constexpr double kMinMap_min = 1;        // less is a failure
 
 std::string FirstLineOf(const char* command) {
@@ -53,7 +55,7 @@ Diagnoses JudgeSpy(const SpyPlaces& places) {
                       is_there ? what : what + " is missing: lcm-spy cannot be used",
                       is_there ? "" : mend});
   };
-  // A line that starts so comes from a Java, not from a shell that found none.
+  // Such a line comes from Java itself, not from a shell that did not find it.
   const std::string java = FirstLineOf("LC_ALL=C java -version 2>&1 | grep ' version '");
   judge(!java.empty(), java.empty() ? "java" : java, "sudo apt-get install default-jre");
   judge(Exists(places.lcm_jar), places.lcm_jar, "sudo apt-get install liblcm-java");
@@ -75,22 +77,21 @@ Diagnoses JudgeDisk(const std::string& folder) {
   }
   if (!fs::is_directory(existing, error) || access(existing.c_str(), W_OK) != 0) {
     return {{Health::kFail, "disk", existing.string() + " cannot be written to",
-             "--run-dir FOLDER that can"}};
+             "choose a writable --run-dir FOLDER"}};
   }
   const fs::space_info space = fs::space(existing, error);
   if (error) return {{Health::kFail, "disk", existing.string() + ": " + error.message(), ""}};
   const double free_mb = 1e-6 * static_cast<double>(space.available);
   const double log_min = free_mb / (kLogMbPerFrame * kRate_hz * 60);
   const double map_min = free_mb / (kMapMbPerFrame * kRate_hz * 60);
-  char text[160];
-  std::snprintf(text, sizeof(text),
-                "%.0f MB free: the map of %.0f min, or a log of everything of %.0f min, at 30 Hz",
-                free_mb, map_min, log_min);
+  const std::string text =
+      Format("%.0f MB free: the map of %.0f min, or a log of everything of %.0f min, at 30 Hz",
+             free_mb, map_min, log_min);
   const Health health = map_min < kMinMap_min   ? Health::kFail
                         : log_min < kMinLog_min ? Health::kWarn
                                                 : Health::kOk;
   return {{health, "disk", existing.string() + ": " + text,
-           health == Health::kOk ? "" : "rm what is not needed there, or another --run-dir"}};
+           health == Health::kOk ? "" : "remove files there, or choose another --run-dir"}};
 }
 
 }  // namespace airdos

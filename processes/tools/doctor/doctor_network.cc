@@ -18,10 +18,10 @@
 namespace airdos {
 namespace {
 
-constexpr std::int64_t kLosslessBytes = 4194304;  // what LcmTransport asks for
+constexpr std::int64_t kLosslessBytes = 4194304;  // what LcmTransport requests
 constexpr std::int64_t kUsualBytes =
-    212992;  // Linux' default: lost none of 90 kB, 1 of 150 of 128 kB
-constexpr std::int64_t kMessageBytes = 131072;  // the largest message of ours
+    212992;  // Linux' default: no messages of 90 kB lost, 1 in 150 of 128 kB
+constexpr std::int64_t kMessageBytes = 131072;  // our largest message
 
 class Socket {
  public:
@@ -44,7 +44,7 @@ int ToInt(const std::string& url, const std::string& digits, std::int64_t max) {
   return static_cast<int>(value);
 }
 
-/// Asks the kernel over which interface it sends to an address; nothing where it has no route.
+/// The interface through which the kernel sends to an address; nothing if it has no route.
 std::optional<int> InterfaceTo(const in_addr& address) {
   struct {
     nlmsghdr header;
@@ -86,14 +86,14 @@ MulticastUrl ParseMulticastUrl(const std::string& url) {
   std::smatch match;
   if (!std::regex_match(url, match, pattern)) {
     throw InputError("LCM URL '" + url +
-                     "': only multicast can be examined, like udpm://239.255.76.67:7667?ttl=0");
+                     "': only multicast can be tested, like udpm://239.255.76.67:7667?ttl=0");
   }
   MulticastUrl result;
   if (match[1].length() > 0) result.address = match[1];
   in_addr address = {};
   if (inet_pton(AF_INET, result.address.c_str(), &address) != 1 ||
       !IN_MULTICAST(ntohl(address.s_addr))) {
-    throw InputError("LCM URL '" + url + "': '" + result.address + "' is no multicast address");
+    throw InputError("LCM URL '" + url + "': '" + result.address + "' is not a multicast address");
   }
   if (match[3].length() > 0) result.port = ToInt(url, match[3], 65535);
   const std::string options = match[5];
@@ -102,7 +102,7 @@ MulticastUrl ParseMulticastUrl(const std::string& url) {
     const std::size_t end = std::min(options.find('&', from), options.size());
     const std::string text = options.substr(from, end - from);
     if (!std::regex_match(text, match, option)) {
-      throw InputError("LCM URL '" + url + "': '" + text + "' is not understood");
+      throw InputError("LCM URL '" + url + "': '" + text + "' cannot be parsed");
     }
     if (match[1] == "ttl") result.ttl = ToInt(url, match[2], 255);
     if (match[1] == "recv_buf_size") result.recv_buf_size = ToInt(url, match[2], 1 << 30);
@@ -142,7 +142,7 @@ std::int64_t GrantedReceiveBuffer(std::int64_t asked) {
   int granted = 0;
   socklen_t length = sizeof(granted);
   if (getsockopt(socket.handle(), SOL_SOCKET, SO_RCVBUF, &granted, &length) != 0) return 0;
-  return asked > 0 ? granted / 2 : granted;  // the kernel doubles what was asked, for its own use
+  return asked > 0 ? granted / 2 : granted;  // the kernel doubles what was requested
 }
 
 Diagnoses JudgeRoute(const MulticastUrl& url, const MulticastRoute& route) {
@@ -167,14 +167,14 @@ Diagnoses JudgeRoute(const MulticastUrl& url, const MulticastRoute& route) {
     result.push_back({Health::kOk, "network.ttl", ttl + "messages stay on this host", ""});
   } else if (route.is_loopback) {
     result.push_back({Health::kWarn, "network.ttl",
-                      ttl + "messages are to leave this host, but " + name + " does not lead there",
+                      ttl + "messages should leave this host, but " + name + " does not lead there",
                       "sudo ip route replace 224.0.0.0/4 dev NETWORK_INTERFACE"});
   } else {
     result.push_back(
         {Health::kWarn, "network.ttl",
          ttl + "messages leave this host over " + name +
-             ", and LCM has no authentication: whoever is there can feed the processes",
-         "ttl=0 in --lcm-url, unless several hosts are wanted"});
+             ", and LCM has no authentication: anybody there can send to the processes",
+         "use ttl=0 in --lcm-url, unless you use several hosts"});
   }
   return result;
 }
@@ -203,7 +203,7 @@ Diagnoses JudgeBuffer(const MulticastUrl& url, std::int64_t granted, std::int64_
   }
   if (by_default < kUsualBytes) {
     result.push_back({Health::kWarn, "network.default_buffer",
-                      "programs that do not ask, such as lcm-spy, get " +
+                      "programs that do not request a size, such as lcm-spy, get " +
                           std::to_string(by_default) + " bytes: they miss images",
                       "sudo sysctl -w net.core.rmem_default=" + std::to_string(kUsualBytes)});
   }

@@ -13,16 +13,16 @@ namespace airdos {
 struct MulticastUrl {
   std::string address = "239.255.76.67";
   int port = 7667;
-  int ttl = 0;                                ///< hosts beyond: 0 = none
+  int ttl = 0;                                ///< 0 = does not leave this host
   std::optional<std::int64_t> recv_buf_size;  ///< bytes
 };
 
-/// Throws InputError for a URL that is not udpm://ADDRESS:PORT?ttl=N&recv_buf_size=N.
+/// Throws InputError for a URL that does not match udpm://ADDRESS:PORT?ttl=N&recv_buf_size=N.
 MulticastUrl ParseMulticastUrl(const std::string& url);
-/// The same URL with another port.
+/// The same URL with a different port.
 std::string WithPort(const MulticastUrl& url, int port);
 
-/// Over which interface this machine sends to the address.
+/// The interface through which this machine sends to the address.
 struct MulticastRoute {
   bool has_route = false;
   std::string interface;
@@ -32,13 +32,14 @@ struct MulticastRoute {
 };
 MulticastRoute FindRoute(const MulticastUrl& url);
 
-/// Receive buffer (bytes) that the kernel gives to a socket that asks for `asked`; 0 asks for none.
+/// Receive buffer (bytes) granted by the kernel to a socket that requests `asked`; 0 means no
+/// request.
 std::int64_t GrantedReceiveBuffer(std::int64_t asked);
 
-/// What of the route, the interface and the ttl stands in the way of messages.
+/// Whether route, interface or TTL prevent messages from arriving.
 Diagnoses JudgeRoute(const MulticastUrl& url, const MulticastRoute& route);
-/// `granted` bytes to us, `by_default` to programs that do not ask, such as lcm-spy. Messages of
-/// 128 kB want 212,992 bytes, lossless images 4 MiB.
+/// `granted` bytes are granted to us, `by_default` to programs that do not request a size, such as
+/// lcm-spy. Messages of 128 kB need 212,992 bytes, lossless images 4 MiB.
 Diagnoses JudgeBuffer(const MulticastUrl& url, std::int64_t granted, std::int64_t by_default);
 
 }  // namespace airdos

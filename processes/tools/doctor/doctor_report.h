@@ -8,20 +8,21 @@
 
 namespace airdos {
 
+/// Result of one test.
 enum class Health { kOk, kWarn, kFail };
 const char* NameOf(Health health);
 
-/// One thing that was examined.
+/// One thing that was tested.
 struct Diagnosis {
   Health health = Health::kOk;
-  std::string kind;  ///< "network.route": stays the same from version to version
-  std::string what;  ///< in words
-  std::string mend;  ///< the command that mends it; empty where there is none
+  std::string kind;  ///< such as "network.route"; stable across versions
+  std::string what;  ///< the result, in words
+  std::string mend;  ///< the command that fixes it; empty if there is none
 };
 using Diagnoses = std::vector<Diagnosis>;
 
 bool HasFail(const Diagnoses& diagnoses);
-/// "FAIL network.route: WHAT (mend: COMMAND)", a line each.
+/// Prints "FAIL network.route: WHAT (mend: COMMAND)", one line each.
 void Print(const Diagnoses& diagnoses, std::ostream* out);
 nlohmann::json ToJson(const Diagnoses& diagnoses);
 

@@ -1,4 +1,5 @@
-// airdos-doctor: whether this machine can run the processes, and what mends it.
+// airdos-doctor: tests whether this machine can run the processes, and says how to fix what is
+// wrong.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -22,7 +23,7 @@ struct Arguments {
   std::string json;
   bool force = false;
   std::string round_trip = "auto";
-  double listen_s = 1.3;  // STATUS comes once a second
+  double listen_s = 1.3;  // STATUS is published once a second
   double round_trip_s = 2;
 };
 
@@ -35,7 +36,7 @@ void ExamineBus(const Arguments& arguments, const MulticastUrl& url, Diagnoses* 
     if (arguments.round_trip == "never") return;
     if (arguments.round_trip == "auto" && !traffic.channels.empty()) {
       result->push_back({Health::kOk, "bus.round_trip",
-                         "not tried: it would load the run on this port like one more camera "
+                         "not tried: it would load the run on this port like another camera "
                          "(--round-trip always does)",
                          ""});
       return;
@@ -51,7 +52,7 @@ int Run(const Arguments& arguments) {
   const OutputFiles outputs({arguments.json}, {{}, arguments.force});
   const MulticastUrl url = ParseMulticastUrl(arguments.lcm_url);
   Diagnoses result = JudgeRoute(url, FindRoute(url));
-  // The same that LcmTransport asks for.
+  // The same size that LcmTransport requests.
   Append(JudgeBuffer(url, GrantedReceiveBuffer(url.recv_buf_size.value_or(4194304)),
                      GrantedReceiveBuffer(0)),
          &result);
@@ -68,23 +69,22 @@ int Run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Says what on this machine stands in the way of a run, one line a finding, with the command "
-      "that mends it. Exit code 0: nothing (warnings are allowed); 1: something; 2: wrong "
+      "Reports what on this machine prevents a run, one line per finding, with the command "
+      "that fixes it. Exit code 0: nothing (warnings are allowed); 1: something; 2: wrong "
       "arguments.",
       "airdos-doctor");
   airdos::Arguments arguments;
-  app.add_option("--lcm-url", arguments.lcm_url, "where the processes are (LCM URL)")
-      ->capture_default_str();
-  airdos::AddFolder("--run-dir", &arguments.run_dir, "folder that results are to go to", &app)
+  app.add_option("--lcm-url", arguments.lcm_url, "LCM URL of the processes")->capture_default_str();
+  airdos::AddFolder("--run-dir", &arguments.run_dir, "folder for results", &app)
       ->capture_default_str();
   app.add_option("--round-trip", arguments.round_trip,
                  "send and receive test messages: auto (not into a run), always, never")
       ->check(airdos::OneOf({"auto", "always", "never"}))
       ->capture_default_str();
-  app.add_option("--listen-s", arguments.listen_s, "how long to listen to others (s)")
+  app.add_option("--listen-s", arguments.listen_s, "time to listen to others (s)")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
-  app.add_option("--round-trip-s", arguments.round_trip_s, "how long to send (s)")
+  app.add_option("--round-trip-s", arguments.round_trip_s, "time to send (s)")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
   airdos::AddFile("--json", &arguments.json, "file to write the findings to", &app);

@@ -21,7 +21,7 @@ std::shared_ptr<const ArticulatedModel> ModelOf(const MovingObject& object) {
   return model;
 }
 
-/// The length of each segment as the points have it, in the mean over the frames.
+/// The length of each segment according to the points, averaged over the frames.
 void StartLengths(BundleProblem::Human* human) {
   std::map<std::pair<int, int>, const Eigen::Vector3d*> points;
   for (const BundleProblem::JointState& joint : human->joints) {
@@ -61,7 +61,7 @@ void AddLandmarks(const SimulatedSequence& sequence, BundleProblem* problem) {
   for (std::size_t k = 0; k < sequence.frames.size(); ++k) {
     const Se3& T_W_C = sequence.frames[k].T_W_C_odometry;
     for (const SimulatedMeasurement& seen : sequence.frames[k].static_points) {
-      if (num_seen[seen.index] < 2) continue;  // says nothing
+      if (num_seen[seen.index] < 2) continue;  // not informative
       const auto [landmark, is_new] =
           index.emplace(seen.index, static_cast<int>(problem->landmarks.size()));
       if (is_new) {
@@ -95,7 +95,7 @@ void AddObjects(const SimulatedSequence& sequence, BundleProblem* problem) {
   }
 }
 
-/// Has the points of objects move along with the camera, from where it is in `from`.
+/// Moves the points of objects along with the camera, away from its poses in `from`.
 void CarryObjects(const BundleProblem& from, BundleProblem* problem) {
   for (BundleProblem::Human& human : problem->humans) {
     for (BundleProblem::JointState& joint : human.joints) {
@@ -158,16 +158,17 @@ BundleOptions Ablation::MakeBundleOptions(AblationRow row) const {
   bundle.use_motion = row == AblationRow::kWithoutRigidity || row == AblationRow::kFull;
   bundle.compute_covariance = options_.compute_covariance;
   bundle.max_iterations = options_.max_iterations;
-  bundle.max_iterations_after_elimination = 0;
+  bundle.max_iterations_after_rejection = 0;
   bundle.function_tolerance = options_.function_tolerance;
   bundle.rigidity_sigma_m = sequence_.options.has_point_noise ? options_.rigidity_sigma_m
                                                               : options_.stereo_rigidity_sigma_m;
+  bundle.person_speed_m_s = 0;  // the paper's simulation knows nothing of how fast people are
   return bundle;
 }
 
 void Ablation::LearnNoise(BundleProblem* problem) const {
   TrackBreakOptions breaks;
-  breaks.camera_sigma_m = 0.03;  // adjusted poses are better than those it started from
+  breaks.camera_sigma_m = 0.03;  // adjusted poses are better than the start values
   for (BundleProblem::Human& human : problem->humans) {
     human.track_breaks.merge(FindTrackBreaks(breaks, *problem, human));
     human.motion_noise = EstimateMotionNoise(options_.noise, *problem, human);
@@ -205,7 +206,7 @@ BundleSummary Ablation::SolveMotion(BundleOptions bundle, BundleProblem* problem
   return SolveBundle(bundle, problem);
 }
 
-/// Tight factors start from a solution without them, and are drawn tight step by step.
+/// Tight factors start from a solution without them and are tightened step by step.
 BundleSummary Ablation::SolveRigidity(const BundleOptions& bundle, BundleProblem* problem) const {
   for (BundleProblem::Human& human : problem->humans) StartLengths(&human);
   BundleOptions loose = bundle;

@@ -11,55 +11,59 @@
 
 namespace airdos {
 
-/// What a row of the paper's table leaves out.
+/// The rows of the paper's table, by what they leave out.
 enum class AblationRow { kBefore, kStatic, kWithoutMotion, kWithoutRigidity, kFull };
 const char* NameOf(AblationRow row);
 const std::vector<AblationRow>& AblationRows();
 
-/// Root mean squares over one sequence.
+/// RMS errors over one sequence.
 struct AblationErrors {
-  double ate_unaligned_m = 0;  ///< positions, the first pose being the truth
+  double ate_unaligned_m = 0;  ///< positions, with the first pose set to the truth
   double ate_aligned_m = 0;    ///< after SE(3) alignment
   double rpe_m = 0;            ///< per frame
   double rpe_deg = 0;
-  double dynamic_m = 0;  ///< of dynamic points, in the axes of the camera that sees them
+  double dynamic_m = 0;  ///< of dynamic points, in the frame of the camera that sees them
   bool has_converged = true;
 };
 
+/// Settings of an Ablation.
 struct AblationOptions {
-  int max_iterations = 1000;  ///< of each solve: enough to converge
+  int max_iterations = 1000;  ///< per solve; enough to converge
   double function_tolerance = 1e-10;
   bool compute_covariance = false;  ///< of the newest pose
   double rigidity_sigma_m = 0.01;
-  double stereo_rigidity_sigma_m = 0.02;  ///< where depths are as uncertain as stereo makes them
-  TrackNoiseOptions noise;                ///< how the motion of each object is weighed
-  int num_noise_passes = 2;  ///< adjustments from which the noise is learnt before the last one
+  double stereo_rigidity_sigma_m = 0.02;  ///< for depths as uncertain as those of stereo
+  TrackNoiseOptions noise;                ///< how the motion of each object is weighted
+  int num_noise_passes = 2;  ///< adjustments to learn the noise from, before the last one
 };
 
-/// Bundle adjustment over a whole simulated sequence, all rows from the same start values. The
-/// noise of each object's motion is learnt from the sequence itself; nothing here sees the truth
-/// but Evaluate().
+/// Bundle adjustment over a whole simulated sequence, with the same start values for all rows. The
+/// noise of each object's motion is learnt from the sequence itself; only Evaluate() sees the
+/// truth.
 class Ablation {
  public:
+  /// An adjusted problem.
   struct Solution {
     BundleProblem problem;
     BundleSummary summary;  ///< of the last solve
   };
 
-  /// The sequence is not owned and outlives this.
+  /// The sequence is not owned and must outlive this.
   Ablation(const AblationOptions& options, const SimulatedSequence& sequence);
 
   /// The problem with start values: first frame fixed, poses from odometry, points as measured.
   BundleProblem MakeProblem() const;
   Solution Solve(AblationRow row) const;
-  /// The errors of a problem's values; `dynamic_m` also where they were no part of the adjustment.
+  /// The errors of a problem's values, including `dynamic_m` even if the points took no part in the
+  /// adjustment.
   AblationErrors Evaluate(const BundleProblem& problem) const;
-  /// Solve and evaluate.
+  /// Solves and evaluates.
   AblationErrors Run(AblationRow row) const;
 
  private:
   BundleOptions MakeBundleOptions(AblationRow row) const;
-  /// From the odometry, and from the solution without people: the one with the lower cost.
+  /// Solves from the odometry and from the solution without people; returns the one with the lower
+  /// cost.
   BundleProblem SolveWithPriorNoise(const BundleOptions& bundle) const;
   void LearnNoise(BundleProblem* problem) const;
   BundleSummary SolveMotion(BundleOptions bundle, BundleProblem* problem) const;

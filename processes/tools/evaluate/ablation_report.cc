@@ -1,11 +1,11 @@
 #include "processes/tools/evaluate/ablation_report.h"
 
 #include <array>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "common/evaluation/statistics.h"
 #include "common/simulation/settings.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -14,7 +14,7 @@ struct Column {
   const char* title;
   const char* key;  // in JSON
   double AblationErrors::*value;
-  double scale;  // into the unit of the title
+  double scale;  // factor to the unit in the title
 };
 constexpr std::array<Column, 5> kColumns = {
     {{"ATE cm", "ate_unaligned_m", &AblationErrors::ate_unaligned_m, 100},
@@ -33,13 +33,6 @@ int CountUnconverged(const std::vector<AblationErrors>& sequences) {
   int num = 0;
   for (const AblationErrors& errors : sequences) num += errors.has_converged ? 0 : 1;
   return num;
-}
-
-template <class... Values>
-std::string Format(const char* format, Values... values) {
-  std::array<char, 200> text;
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
 }
 
 }  // namespace

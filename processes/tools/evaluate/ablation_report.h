@@ -18,15 +18,15 @@ struct AblationGroup {
   std::vector<std::vector<AblationErrors>> rows;  ///< [row as in AblationRows()][sequence]
 };
 
-/// Simulates `num_sequences` of the setting, with seeds from `first_seed` on, and solves every row.
-/// `on_progress` is told the share that is done; it may be empty. Throws InputError for a setting
-/// that does not exist.
+/// Simulates `num_sequences` sequences of the setting, with seeds from `first_seed` on, and solves
+/// every row. `on_progress` is called with the completed fraction; it may be empty. Throws
+/// InputError for an unknown setting.
 AblationGroup RunAblation(const AblationOptions& options, const std::string& setting,
                           std::uint64_t first_seed, int num_sequences,
                           const std::function<void(double)>& on_progress);
 
-/// The paper's table for people to read: mean and spread over the sequences, and what the full
-/// adjustment gains over the static one.
+/// The paper's table as text: mean and spread over the sequences, and what the full adjustment
+/// gains over the static one.
 std::string ToTable(const AblationGroup& group);
 nlohmann::json ToJson(const AblationGroup& group);
 

@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "common/evaluation/statistics.h"
 #include "common/simulation/settings.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
 
-/// Twice the cost of the static scene's residuals at the values of `problem`. Landmarks there are
-/// the best for the poses: nothing else holds them.
+/// Twice the cost of the static scene's residuals at the poses of `problem`. Its landmarks are
+/// optimal for these poses, since nothing else constrains them.
 double StaticDeviance(BundleOptions bundle, BundleProblem problem) {
   bundle.use_people = bundle.compute_covariance = false;
-  bundle.max_iterations = bundle.max_iterations_after_elimination = 0;
+  bundle.max_iterations = bundle.max_iterations_after_rejection = 0;
   return 2 * SolveBundle(bundle, &problem).initial_cost;
 }
 
@@ -93,12 +93,10 @@ std::string DoNoHarmTitle() {
 std::string ToLine(const DoNoHarmSetting& setting) {
   const Statistics ate = Ratios(setting, &DoNoHarmRun::AteRatio);
   const Statistics rpe = Ratios(setting, &DoNoHarmRun::RpeRatio);
-  std::array<char, 160> line;
-  std::snprintf(line.data(), line.size(), "%-14s %9.2f %6.2f %12.3f %8.3f %8.3f %8.3f %7.0f %%\n",
-                setting.setting.c_str(), 100 * MedianAte(setting, &DoNoHarmRun::without_people),
+  return Format("%-14s %9.2f %6.2f %12.3f %8.3f %8.3f %8.3f %7.0f %%\n", setting.setting.c_str(),
+                100 * MedianAte(setting, &DoNoHarmRun::without_people),
                 100 * MedianAte(setting, &DoNoHarmRun::decided), ate.median, ate.max, rpe.median,
                 rpe.max, 100 * TrustedShare(setting));
-  return line.data();
 }
 
 nlohmann::json ToJson(const DoNoHarmSetting& setting) {

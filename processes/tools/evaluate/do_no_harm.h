@@ -11,21 +11,21 @@
 
 namespace airdos {
 
+/// When people are believed in the measurement of do-no-harm.
 struct DoNoHarmOptions {
   AblationOptions ablation;
-  /// People are believed only if the static scene does not contradict them: its own residuals, at
-  /// the poses with people, may not add up to more than at its own solution by what chance allows
-  /// (a likelihood ratio with 6 degrees of freedom a free pose; so many sigmas above the mean) ...
+  /// People are believed only if the static scene does not contradict them: its residuals at the
+  /// poses with people may exceed those at its own solution only by what chance allows (a
+  /// likelihood ratio with 6 degrees of freedom per free pose; this many sigmas above the mean) ...
   double max_deviance_sigmas = 3;
-  /// ... and the static scene has not said everything already: sigma of the last position with
-  /// people over the one without.
+  /// ... and the static scene has not determined everything already: sigma of the last position
+  /// with people relative to the one without.
   double max_relative_sigma = 0.98;
 };
-/// As the measurement of do-no-harm has it: as accurate as an estimator would be, not to ten
-/// digits.
+/// As in the measurement of do-no-harm: as accurate as an estimator would be, not to ten digits.
 DoNoHarmOptions DefaultDoNoHarmOptions();
 
-/// One sequence: the full adjustment, or the static one where people are not believed.
+/// One sequence: the full adjustment, or the static one if people are not believed.
 struct DoNoHarmRun {
   std::uint64_t seed = 0;
   AblationErrors without_people;
@@ -37,19 +37,21 @@ struct DoNoHarmRun {
   double RpeRatio() const { return decided.rpe_m / without_people.rpe_m; }
 };
 
+/// The runs of one setting.
 struct DoNoHarmSetting {
   std::string setting;
   std::vector<DoNoHarmRun> runs;
 };
 
-/// Simulates and solves `num_sequences` of a setting, seeds from `first_seed` on. `on_run` may be
-/// empty.
+/// Simulates and solves `num_sequences` sequences of a setting, with seeds from `first_seed` on.
+/// `on_run` may be empty.
 DoNoHarmSetting RunDoNoHarm(const DoNoHarmOptions& options, const std::string& setting,
                             std::uint64_t first_seed, int num_sequences,
                             const std::function<void(const DoNoHarmRun&)>& on_run);
 
 std::string DoNoHarmTitle();
-/// One line: median and worst ratio of the errors with people to those without, share trusted.
+/// One line: median and worst ratio of the errors with people to those without, and share of
+/// trusted runs.
 std::string ToLine(const DoNoHarmSetting& setting);
 nlohmann::json ToJson(const DoNoHarmSetting& setting);
 

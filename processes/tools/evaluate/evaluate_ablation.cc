@@ -64,14 +64,14 @@ void AddAblationCommand(CLI::App* app) {
                    "settings of the simulator (default: the paper's four groups)")
       ->check(OneOf(SettingNames()));
   command->add_flag("--do-no-harm", arguments->do_no_harm,
-                    "instead: how people change the camera's errors, in every setting");
+                    "instead: how people affect the camera's errors, in every setting");
   command
       ->add_option("--sequences", arguments->num_sequences,
                    "of each group (default: 10; do-no-harm: 100)")
       ->check(CLI::PositiveNumber);
   command->add_option("--seed", arguments->seed, "of each group's first sequence")
       ->capture_default_str();
-  AddFile("--json", &arguments->json, "file to write all figures to", command);
+  AddFile("--json", &arguments->json, "JSON file for all figures", command);
   AddForce(&arguments->force, command);
   command->callback([arguments] { RunAblationCommand(*arguments); });
 }

@@ -8,8 +8,8 @@
 
 namespace airdos {
 
-// The subcommands of airdos-evaluate. Each adds itself with its options and runs when it was given;
-// all throw InputError on what cannot be used.
+// The subcommands of airdos-evaluate. Each adds itself with its options and runs if it was given;
+// all throw InputError for input that cannot be used.
 
 void AddTrajectoryCommand(CLI::App* app);
 void AddPeopleCommand(CLI::App* app);
@@ -17,7 +17,7 @@ void AddCurveCommand(CLI::App* app);
 void AddSpeedCommand(CLI::App* app);
 void AddAblationCommand(CLI::App* app);
 
-/// Warnings once more, on the standard error: the table may go to a file.
+/// Repeats warnings on standard error, since the table may go to a file.
 void SayWarnings(const Remarks& remarks);
 
 }  // namespace airdos

@@ -44,11 +44,11 @@ void AddCurveCommand(CLI::App* app) {
   CLI::App* const command = app->add_subcommand(
       "curve", "When people help: errors against the number of static features");
   AddFile("--runs", &arguments->runs,
-          "JSON lines as launch_scripts/benchmark/benchmark_people_help.sh writes them, one a run",
+          "JSON lines as written by launch_scripts/benchmark/benchmark_people_help.sh, one per run",
           command)
       ->required();
-  AddFile("--json", &arguments->json, "file to write all figures to", command);
-  AddFile("--plot", &arguments->plot, "PNG file to draw the curve into", command);
+  AddFile("--json", &arguments->json, "JSON file for all figures", command);
+  AddFile("--plot", &arguments->plot, "PNG file for a plot of the curve", command);
   AddForce(&arguments->force, command);
   command->callback([arguments] { RunCurve(*arguments); });
 }

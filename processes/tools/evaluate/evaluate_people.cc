@@ -22,7 +22,7 @@ struct PeopleArguments {
   bool force = false;
 };
 
-/// The poses of the camera that belong together. The truth must be in optical axes.
+/// The matched poses of the camera. The truth must be in optical axes.
 TrajectoryReport CompareCameras(const PeopleArguments& arguments) {
   EvaluationOptions options;
   options.max_time_difference_s = 0.001;
@@ -33,7 +33,7 @@ TrajectoryReport CompareCameras(const PeopleArguments& arguments) {
   if (!report.no_rotations_because.empty()) {
     throw InputError(arguments.estimate + " against " + arguments.ground_truth + ": " +
                      report.no_rotations_because +
-                     "; people are compared in the axes of the camera, give poses with rotations");
+                     "; people are compared in camera axes, so poses with rotations are needed");
   }
   return report;
 }
@@ -60,7 +60,7 @@ void RunPeople(const PeopleArguments& arguments) {
 void AddPeopleCommand(CLI::App* app) {
   const auto arguments = std::make_shared<PeopleArguments>();
   CLI::App* const command =
-      app->add_subcommand("people", "Errors of people: joints, identities, lengths of segments");
+      app->add_subcommand("people", "Errors of people: joints, identities, segment lengths");
   AddFile("--people", &arguments->people, "people.jsonl of a map", command)->required();
   AddFile("--joints", &arguments->joints, "true joints: joints_gt.json, or its .gz", command)
       ->required();
@@ -69,7 +69,7 @@ void AddPeopleCommand(CLI::App* app) {
   AddFile("--ground-truth", &arguments->ground_truth,
           "TUM file of the true camera, optical axes, in the world of the true joints", command)
       ->required();
-  AddFile("--json", &arguments->json, "file to write all figures to", command);
+  AddFile("--json", &arguments->json, "JSON file for all figures", command);
   AddForce(&arguments->force, command);
   command->callback([arguments] { RunPeople(*arguments); });
 }

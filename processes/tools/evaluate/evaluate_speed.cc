@@ -39,13 +39,13 @@ void RunSpeed(const SpeedArguments& arguments) {
 
 void AddSpeedCommand(CLI::App* app) {
   const auto arguments = std::make_shared<SpeedArguments>();
-  CLI::App* const command = app->add_subcommand("speed", "How fast the chain and its solver are");
+  CLI::App* const command = app->add_subcommand("speed", "Speed of the chain and its solver");
   AddFile("--runs", &arguments->runs,
-          "JSON lines as launch_scripts/benchmark/benchmark_speed.sh writes them, one a sequence",
+          "JSON lines as written by launch_scripts/benchmark/benchmark_speed.sh, one per sequence",
           command);
   AddFile("--solver", &arguments->solver, "JSON of airdos_solver_benchmark", command);
-  AddFile("--json", &arguments->json, "file to write all figures to", command);
-  AddFile("--plot", &arguments->plot, "PNG file to draw how they grow into", command);
+  AddFile("--json", &arguments->json, "JSON file for all figures", command);
+  AddFile("--plot", &arguments->plot, "PNG file for plots of how they scale", command);
   AddForce(&arguments->force, command);
   command->callback([arguments] { RunSpeed(*arguments); });
 }

@@ -69,7 +69,7 @@ void AddTrajectoryCommand(CLI::App* app) {
   AddFile("--ground-truth", &arguments->ground_truth, "true trajectory, likewise", command)
       ->required();
   AddFile("--times", &arguments->times,
-          "times of the rows of a file without times (KITTI), one a line for each row", command);
+          "times for the rows of a file without times (KITTI), one line per row", command);
   command
       ->add_option(
           "--gt-axes", arguments->axes,
@@ -88,11 +88,12 @@ void AddTrajectoryCommand(CLI::App* app) {
   command->add_option("--max-diff", arguments->max_difference_s, "largest time difference (s)")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--frames", arguments->num_frames,
-                      "images of the sequence, for the completeness (default: as many as the "
-                      "ground truth has rows, or the estimate if the truth has a higher rate)");
-  AddFile("--json", &arguments->json, "file to write all figures to", command);
-  AddFile("--plot", &arguments->plot, "PNG file to draw trajectories and errors into", command);
+  command->add_option(
+      "--frames", arguments->num_frames,
+      "number of images in the sequence, for the completeness (default: as many as the "
+      "ground truth has rows, or the estimate if the truth has a higher rate)");
+  AddFile("--json", &arguments->json, "JSON file for all figures", command);
+  AddFile("--plot", &arguments->plot, "PNG file for a plot of trajectories and errors", command);
   AddForce(&arguments->force, command);
   command->callback([arguments] { RunTrajectory(*arguments); });
 }

@@ -1,4 +1,4 @@
-// airdos-evaluate: how good an estimate is, given the truth.
+// airdos-evaluate: measures how good an estimate is, given the truth.
 #include <CLI/CLI.hpp>
 #include <opencv2/core.hpp>
 
@@ -7,7 +7,7 @@
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  CLI::App app("How good an estimate is, given the truth", "airdos-evaluate");
+  CLI::App app("Measures how good an estimate is, given the truth", "airdos-evaluate");
   app.fallthrough();
   app.require_subcommand(1);
   airdos::AddTrajectoryCommand(&app);
@@ -15,6 +15,6 @@ int main(int argc, char** argv) {
   airdos::AddCurveCommand(&app);
   airdos::AddSpeedCommand(&app);
   airdos::AddAblationCommand(&app);
-  // Each command runs when it was parsed.
+  // Each command runs as soon as it has been parsed.
   return airdos::RunProgram(argc, argv, &app, [] { return 0; });
 }

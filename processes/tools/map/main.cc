@@ -1,4 +1,4 @@
-// airdos-map: what is in a 4-D map, and its exports.
+// airdos-map: shows and exports the contents of a 4-D map.
 #include <CLI/CLI.hpp>
 #include <cinttypes>
 #include <cstdio>
@@ -88,18 +88,18 @@ CLI::App* AddCommand(const std::string& name, const std::string& text, Arguments
 }
 
 int Run(int argc, char** argv) {
-  CLI::App app("What is in a 4-D map, and its exports", "airdos-map");
+  CLI::App app("Shows and exports the contents of a 4-D map", "airdos-map");
   app.require_subcommand(1);
   app.fallthrough();
   Arguments arguments;
-  AddCommand("info", "Print what a map holds", &arguments, &app);
+  AddCommand("info", "Print what a map contains", &arguments, &app);
   CLI::App* const export_command =
       AddCommand("export", "Write trajectories, PLY and people of a map", &arguments, &app);
   AddFolder("--out", &arguments.out, "folder to write to", export_command)->required();
   AddForce(&arguments.force, export_command);
   CLI::App* const plot_command =
-      AddCommand("plot", "Draw a map from above: camera, people, static points", &arguments, &app);
-  AddFile("--out", &arguments.out, "PNG to write", plot_command)->required();
+      AddCommand("plot", "Plot a map from above: camera, people, static points", &arguments, &app);
+  AddFile("--out", &arguments.out, "PNG file to write", plot_command)->required();
   AddForce(&arguments.force, plot_command);
   return RunProgram(argc, argv, &app, [&] {
     if (app.got_subcommand("info")) PrintInfo(arguments.input);

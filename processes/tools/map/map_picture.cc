@@ -12,13 +12,13 @@ namespace airdos {
 namespace {
 
 constexpr double kMaxDistance_m =
-    30;  // static points farther from the camera's path would squeeze the rest
+    30;  // static points farther from the camera's path would shrink the rest
 constexpr int kMinLandmarkObservations = 3;
 constexpr std::size_t kMinPersonFrames = 5;
 const cv::Scalar kLandmarkColor(190, 190, 190);
 const cv::Scalar kCameraColor(200, 90, 0);
 
-/// One of evenly spread hues, the same for a track in each picture.
+/// One of evenly spread hues, the same for a track in every picture.
 cv::Scalar ColorOf(HumanId id) {
   const auto hue = static_cast<uchar>(id.value * 67 % 180);
   const cv::Mat hsv(1, 1, CV_8UC3, cv::Scalar(hue, 200, 200));
@@ -64,7 +64,7 @@ std::vector<ChartSeries> People(const FourDMap& map) {
   std::vector<ChartSeries> series;
   for (const auto& [id, path] : paths) {
     if (path.size() < kMinPersonFrames) continue;
-    series.push_back({series.empty() ? "people, a colour each" : "", ColorOf(id), 2, path});
+    series.push_back({series.empty() ? "people, one colour each" : "", ColorOf(id), 2, path});
   }
   return series;
 }
@@ -92,7 +92,7 @@ void WriteMapPicture(const FourDMap& map, const std::string& path) {
   bool is_written = false;
   try {
     is_written = cv::imwrite(path, DrawMap(map));
-  } catch (const cv::Exception&) {  // no such folder, or no known ending
+  } catch (const cv::Exception&) {  // no such folder, or an unknown extension
   }
   if (!is_written) throw InputError(path + ": cannot be written as a picture");
 }

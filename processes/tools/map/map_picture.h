@@ -8,9 +8,9 @@
 
 namespace airdos {
 
-/// The map from above (x right, z forward of the first camera, m): static points near the camera's
-/// path, the path itself, and the path of each person that was seen often enough, in a colour of
-/// its own. 8-bit BGR.
+/// Draws the map from above (x right, z forward of the first camera, m): static points near the
+/// camera's path, the path itself, and the path of each person seen often enough, each in its own
+/// colour. 8-bit BGR.
 cv::Mat DrawMap(const FourDMap& map);
 
 /// Throws InputError if the file cannot be written.

@@ -3,7 +3,7 @@
 
 namespace airdos {
 
-/// Says on stderr how far a run is: a bar on a terminal, else one line every ten per cent.
+/// Shows on stderr how far a run has got: a bar on a terminal, otherwise one line per ten per cent.
 class ProgressBar {
  public:
   ProgressBar();

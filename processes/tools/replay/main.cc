@@ -18,7 +18,7 @@
 int main(int argc, char** argv) {
   CLI::App app(
       "Runs all processes in one, as fast as the machine allows, on a log or data set. Writes only "
-      "what --out, --run-dir and --timing name.",
+      "what --out, --run-dir and --timing specify.",
       "airdos-replay");
   airdos::ReplaySetup setup;
   airdos::ReplayOptions options;
@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
   airdos::InputCheckOptions check;
   airdos::AddInputCheckOptions(&app, &check);
   airdos::AddFile("--out", &options.out_path, "log of what the processes publish", &app);
-  app.add_flag("--all", options.writes_inputs, "have the inputs in that log as well");
+  app.add_flag("--all", options.writes_inputs, "include the inputs in that log");
   airdos::AddFolder("--run-dir", &setup.run_dir,
                     "folder for map, trajectories, configurations; without it no map is recorded",
                     &app);
@@ -45,12 +45,12 @@ int main(int argc, char** argv) {
                   &app);
   airdos::AddFolder("--config-dir", &config_path, "older name of --config", &app)->group("");
   app.add_option("--set", setup.overrides,
-                 "process:section.key=value (again for more); the process may be left out where "
-                 "one alone has the key")
+                 "process:section.key=value (repeatable); the process may be omitted if "
+                 "only one has the key")
       ->allow_extra_args(false);
-  app.add_option("--people", setup.people, "what people are used for")
+  app.add_option("--people", setup.people, "how people are used")
       ->check(airdos::OneOf({"off", "mask_only", "on"}));
-  app.add_option("--masks", setup.masks, "whether pixels on people are left out")
+  app.add_option("--masks", setup.masks, "whether pixels on people are excluded")
       ->check(airdos::OneOf({"off", "on"}));
   app.add_option("--first", first, "first image number");
   app.add_option("--last", last, "last image number");
@@ -60,14 +60,14 @@ int main(int argc, char** argv) {
                "run only the optimizer and the map recorder, on the features and people that the "
                "log holds (airdos-simulate)");
   app.add_option("--threads", threads,
-                 "1: all in one; auto: one for each process, if there are cores")
+                 "1: all in one; auto: one per process, if there are enough cores")
       ->check(airdos::OneOf({"1", "auto"}))
       ->capture_default_str();
   airdos::AddFile("--timing", &timing_path, "JSON file for ms per frame of each process", &app);
   airdos::AddForce(&setup.rules.force, &app);
-  app.add_flag("--no-progress", no_progress, "do not say how far it is");
+  app.add_flag("--no-progress", no_progress, "do not report progress");
   app.add_flag("--digest", digest, "print the digests of the output channels only");
-  app.add_flag("--digest-only", digest_only, "print them of the log as it is; run nothing");
+  app.add_flag("--digest-only", digest_only, "print the digests of the log itself; run nothing");
 
   return airdos::RunProgram(argc, argv, &app, [&] {
     if (digest_only) {
@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
       return airdos::OpenFrameSource(input.path(), first, last, inputs, check.calibration);
     };
     airdos::LoopedSource source(open, num_loops);
-    // Said once everything else is known to be right.
+    // Reported only once everything else is known to be right.
     std::vector<std::string> remarks;
     for (const std::string& note : source.TakeNotes()) remarks.push_back("note: " + note);
     if (!check.is_off && !setup.from_features) {

@@ -16,6 +16,7 @@
 #include "common/util/error.h"
 #include "common/util/json_file.h"
 #include "common/util/output_files.h"
+#include "common/util/quantile.h"
 #include "processes/node/bus/fifo_bus.h"
 #include "processes/node/bus/parallel_bus.h"
 #include "processes/node/message/channels.h"
@@ -30,8 +31,8 @@ double NowMs(clockid_t clock) {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-// Adds up what a node's calls take until it is done with a frame. Each node has its own entry, so
-// that nodes on different threads do not meet.
+// Accumulates the time of a node's calls until it is done with a frame. Each node has its own
+// entry, so nodes on different threads do not interfere.
 class Stopwatch : public Bus::WorkObserver {
  public:
   explicit Stopwatch(const std::vector<ReplayNode>& nodes) {
@@ -71,9 +72,9 @@ class Stopwatch : public Bus::WorkObserver {
   std::map<std::string, Lap> laps_;
 };
 
-using FrameKey = std::pair<std::int64_t, std::int64_t>;  // session, seq
+using FrameKey = std::pair<std::int64_t, std::int64_t>;  // (session, seq)
 
-// Keeps what the bus carries: log, digests, numbers of frames.
+// Keeps what the bus carries: log, digests, frame numbers.
 class Archive {
  public:
   explicit Archive(const ReplayOptions& options) : writes_inputs_(options.writes_inputs) {
@@ -146,14 +147,11 @@ struct Statistics {
   double p99 = 0;
 };
 
-Statistics StatisticsOf(std::vector<double> values) {
+Statistics StatisticsOf(const std::vector<double>& values) {
   if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
   double sum = 0;
   for (const double value : values) sum += value;
-  const auto last = static_cast<double>(values.size() - 1);
-  const auto quantile = [&](double q) { return values[static_cast<std::size_t>(q * last + 0.5)]; };
-  return {sum / static_cast<double>(values.size()), quantile(0.50), quantile(0.99)};
+  return {sum / static_cast<double>(values.size()), Quantile(values, 0.50), Quantile(values, 0.99)};
 }
 
 double PeakMemoryMb() {
@@ -162,7 +160,7 @@ double PeakMemoryMb() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-// The next frame; where the source fails, what came before has its effect first.
+// The next frame. If the source fails, everything before takes effect first.
 std::vector<Envelope> NextFrame(FrameSource* source, Bus* bus) {
   try {
     return source->NextFrame();
@@ -198,7 +196,7 @@ ReplayResult Replay(FrameSource* source, const std::vector<ReplayNode>& nodes,
   for (const ReplayNode& entry : nodes) entry.node->Finish();
 
   archive.Fill(&result);
-  // What went into a pipe or a device cannot be read again.
+  // Whatever went to a pipe or a device cannot be read again.
   if (StampOf(options.out_path)) result.log_sha256 = FileSha256(options.out_path);
   result.timing = stopwatch.TakeTiming();
   for (const ReplayNode& entry : nodes) AddRemarks(*entry.node, &result.remarks);

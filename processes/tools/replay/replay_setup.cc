@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/config/config_reader.h"
+#include "common/config/option_pages.h"
 #include "common/util/error.h"
 #include "common/util/input_file.h"
 #include "common/util/output_folder.h"
@@ -26,21 +27,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kSession = 1;  // of data sets: always the same, so that runs compare
+constexpr std::int64_t kSession = 1;  // of data sets; always the same, so that runs are comparable
 
 struct Process {
-  std::string name;  // of its configuration file and in overrides
-  // None of the map recorder, which is made last.
+  std::string name;  // in its configuration file and in overrides
+  RenamedKeys renamed;
+  // Not set for the map recorder, which is created last.
   std::function<std::unique_ptr<Node>(ConfigReader*)> make_node;
   std::vector<std::string> publishes;
 };
 
 const std::vector<Process>& Processes() {
   static const std::vector<Process> processes{
-      {"frontend", MakeFrontendNode, {channel::kStaticFeatures}},
-      {"human_tracker", MakeHumanTrackerNode, {channel::kHumanObservations}},
-      {"optimizer", MakeOptimizerNode, {channel::kStateEstimate, channel::kMapUpdate}},
-      {"map_recorder", nullptr, {}}};
+      {"frontend",
+       PagesOf<FrontendOptions>().renamed,
+       MakeFrontendNode,
+       {channel::kStaticFeatures}},
+      {"human_tracker",
+       PagesOf<HumanTrackerOptions>().renamed,
+       MakeHumanTrackerNode,
+       {channel::kHumanObservations}},
+      {"optimizer",
+       PagesOf<OptimizerOptions>().renamed,
+       MakeOptimizerNode,
+       {channel::kStateEstimate, channel::kMapUpdate}},
+      {"map_recorder", PagesOf<MapRecorderOptions>().renamed, nullptr, {}}};
   return processes;
 }
 
@@ -56,12 +67,13 @@ std::string ConfigPath(const ReplaySetup& setup, const std::string& process) {
 Configs ReadConfigs(const ReplaySetup& setup) {
   Configs configs;
   for (const Process& process : Processes()) {
-    configs.emplace(process.name, ConfigReader::FromFile(ConfigPath(setup, process.name)));
+    configs.emplace(process.name,
+                    ConfigReader::FromFile(ConfigPath(setup, process.name), process.renamed));
   }
   return configs;
 }
 
-/// The one process whose configuration has the key of "section.key=value".
+/// The only process whose configuration has the key in "section.key=value".
 std::string OwnerOf(const std::string& text, const Configs& configs) {
   const std::string key = text.substr(0, text.find('='));
   std::string owner;
@@ -70,12 +82,13 @@ std::string OwnerOf(const std::string& text, const Configs& configs) {
     for (const std::string& known : config.Keys()) all_keys.push_back(known);
     if (!config.Has(key)) continue;
     if (!owner.empty()) {
-      throw InputError("--set '" + text + "': more than one process has this key; say " + owner +
+      throw InputError("--set '" + text + "': more than one process has this key; write " + owner +
                        ":" + key + " or " + process + ":" + key);
     }
     owner = process;
   }
   if (owner.empty()) {
+    for (const auto& [process, config] : configs) config.RequireNotRenamed(key);
     throw InputError("--set '" + text + "': no process has the key '" + key + "'" +
                      DidYouMean(key, all_keys));
   }
@@ -87,7 +100,7 @@ void AddOverride(const std::string& text, const Configs& configs, Assignments* a
   const std::string process =
       assignment.process.empty() ? OwnerOf(text, configs) : assignment.process;
   if (configs.count(process) == 0) {
-    throw InputError("--set '" + text + "': " + process + " is no part of a replay");
+    throw InputError("--set '" + text + "': " + process + " is not part of a replay");
   }
   (*assignments)[process].push_back(assignment.text);
 }
@@ -105,7 +118,7 @@ Assignments AssignmentsOf(const ReplaySetup& setup, const Configs& configs) {
     assignments["frontend"].push_back(std::string("masks.use=") +
                                       (masks == "on" ? "true" : "false"));
   }
-  // Not what a configuration says: that of an earlier run names its folder.
+  // Not taken from the configuration: an earlier run's names that run's folder.
   assignments["map_recorder"].push_back("output.directory=" + setup.run_dir);
   for (const std::string& text : setup.overrides) AddOverride(text, configs, &assignments);
   return assignments;
@@ -118,7 +131,7 @@ void WriteText(const std::string& path, const std::string& text) {
   if (!file) throw InputError(path + ": cannot be written");
 }
 
-/// The name of the file within the folder; empty if it lies elsewhere.
+/// The name of the file within the folder; empty if it is elsewhere.
 std::string NameWithin(const std::string& folder, const std::string& path) {
   std::error_code error;
   const fs::path name = fs::weakly_canonical(fs::absolute(path, error), error)
@@ -127,14 +140,15 @@ std::string NameWithin(const std::string& folder, const std::string& path) {
   return is_within ? name.string() : "";
 }
 
-/// Refuses what must not be written before anything is: no two files of one name, none in the way.
+/// Refuses what must not be written before anything is written: duplicate names, or files in the
+/// way.
 void ClaimOutputs(const std::vector<std::string>& names, OutputFolder* results) {
   results->RequireReplaceable(names, [](const std::string&, const std::string&) { return false; });
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
         names.begin() + static_cast<std::ptrdiff_t>(i)) {
       throw InputError(results->PathOf(names[i]) +
-                       ": is to be written twice; give each output a name of its own");
+                       ": would be written twice; give each output its own name");
     }
   }
   for (const std::string& name : names) results->Claim(name, "run");
@@ -154,7 +168,7 @@ void SetConfig(const std::string& path, ReplaySetup* setup) {
   if (std::find(names.begin(), names.end(), stem) == names.end()) {
     const std::string hint = DidYouMean(stem, names);
     throw InputError("--config " + path +
-                     ": the name does not say of which process it is: frontend.yaml, "
+                     ": the name does not tell which process it belongs to: frontend.yaml, "
                      "human_tracker.yaml, optimizer.yaml or map_recorder.yaml" +
                      hint);
   }

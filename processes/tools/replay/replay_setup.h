@@ -13,7 +13,7 @@
 
 namespace airdos {
 
-/// What the options of airdos-replay say about the four processes.
+/// What the options of airdos-replay specify for the four processes.
 struct ReplaySetup {
   std::string config_dir;   ///< folder with <process>.yaml
   std::string config_file;  ///< one process' file by its name, <process>.yaml; may be empty
@@ -21,36 +21,39 @@ struct ReplaySetup {
                             ///< empty: no map is recorded (unless `overrides` names a folder)
   std::string people;       ///< "off", "mask_only", "on"; empty: as configured
   std::string masks;        ///< "off", "on"; empty: as configured or as `people` says
-  /// The last word: "process:section.key=value", or without process where one alone has the key.
+  /// Overrides, applied last: "process:section.key=value", or without process if only one has
+  /// the key.
   std::vector<std::string> overrides;
-  bool from_features = false;  ///< optimizer and map recorder alone, on a log of features
-  /// What is read, besides the configurations, and what may be replaced.
+  bool from_features = false;  ///< only optimizer and map recorder, on a log of features
+  /// What is read besides the configurations, and what may be replaced.
   OutputRules rules;
-  /// Files that will be written besides; those in the recorder's folder belong to its results.
+  /// Other files that will be written; those in the recorder's folder belong to its results.
   std::vector<std::string> outputs;
 };
 
-/// Sets what --config names: a folder with <process>.yaml, or the file of one process, known by its
-/// name (the others' are then those of `config_dir`). Throws InputError.
+/// Applies --config: a folder with <process>.yaml, or the file of one process, recognised by its
+/// name (the others then come from `config_dir`). Throws InputError.
 void SetConfig(const std::string& path, ReplaySetup* setup);
 
-/// The nodes of a replay, each configured as its process would be: the four (or the last two); the
-/// map recorder only where it is told where to record. They may be used as long as this lives.
+/// The nodes of a replay, each configured like its process: all four, or the last two; the map
+/// recorder only if a folder for its results is given. They must not be used after this object is
+/// gone.
 struct ReplayNodes {
   std::vector<ReplayNode> nodes;
-  std::unique_ptr<OutputFiles> outputs;  ///< those of the setup outside of the recorder's folder
+  std::unique_ptr<OutputFiles> outputs;  ///< those of the setup outside the recorder's folder
 };
 
-/// Throws InputError for a wrong file, key or value, and where something must not be written; then
-/// nothing was. Creates run_dir and writes <process>.yaml, the configuration in force, into it.
+/// Throws InputError for a wrong file, key or value, and if something must not be written; nothing
+/// has been written then. Creates run_dir and writes the resolved configuration to it, as
+/// <process>.yaml.
 ReplayNodes PrepareReplay(const ReplaySetup& setup);
 
-/// The nodes alone.
+/// Only the nodes.
 std::vector<ReplayNode> MakeReplayNodes(const ReplaySetup& setup);
 
-/// A log, or a folder with a data set, whose frames are published as airdos-stereo-player would.
-/// Only frames with first <= seq <= last. `inputs` is about logs,
-/// `calibration` about folders (SequenceOptions). Throws InputError.
+/// Opens a log, or a folder with a data set, whose frames are published as by airdos-stereo-player.
+/// Only frames with first <= seq <= last. `inputs` applies to logs, `calibration` to folders
+/// (SequenceOptions). Throws InputError.
 std::unique_ptr<FrameSource> OpenFrameSource(
     const std::string& path, std::int64_t first = std::numeric_limits<std::int64_t>::min(),
     std::int64_t last = std::numeric_limits<std::int64_t>::max(),

@@ -1,4 +1,5 @@
-// airdos-simulate: a log of what the frontend and the human tracker would say of a simulated world.
+// airdos-simulate: writes a log of what frontend and human tracker would publish in a simulated
+// world.
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <iostream>
@@ -18,10 +19,10 @@ int main(int argc, char** argv) {
   std::uint64_t seed = 1;
   std::string out;
   bool force = false;
-  app.add_option("--setting", setting, "what is simulated")
+  app.add_option("--setting", setting, "setting to simulate")
       ->check(airdos::OneOf(airdos::SettingNames()))
       ->capture_default_str();
-  app.add_option("--seed", seed, "of the random numbers")->capture_default_str();
+  app.add_option("--seed", seed, "seed of the random numbers")->capture_default_str();
   airdos::AddFile("--out", &out, "log to write", &app)->required();
   airdos::AddForce(&force, &app);
 

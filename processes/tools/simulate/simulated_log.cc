@@ -22,15 +22,6 @@ namespace {
 constexpr std::int64_t kSession = 1;
 constexpr double kLeastSigmaPx = 0.01;
 
-template <class Message>
-Message MessageOf(const Header& header) {
-  Message message{};
-  message.utime = header.utime;
-  message.seq = header.seq;
-  message.session = header.session;
-  return message;
-}
-
 double SigmaPx(const SimulationOptions& options, const Eigen::Vector3d& p_C) {
   const double sigma_px = options.has_point_noise
                               ? options.camera.fx_px * options.point_sigma_m / p_C.z()
@@ -52,8 +43,8 @@ Envelope Calibration(const SimulationOptions& options, const Header& header) {
   return {channel::kCalibration, Encode(message)};
 }
 
-/// By how much constant velocity is wrong from frame to frame, per axis: translation (m) and
-/// rotation (rad). What a front end would have learnt of its carrier, generously as ours.
+/// Error of the constant-velocity prediction per frame and axis: translation (m) and rotation
+/// (rad). What a frontend would have learnt for its carrier, with a margin like ours.
 struct CarrierSigma {
   double position_m = 0;
   double orientation_rad = 0;
@@ -111,12 +102,7 @@ void AddJoint(const SimulationOptions& options, const SimulatedMeasurement& seen
   add(seen.p_C.x(), &human->x_C_m);
   add(seen.p_C.y(), &human->y_C_m);
   add(seen.p_C.z(), &human->z_C_m);
-  const Eigen::Matrix3d S = PointCovariance(options, seen.p_C);
-  std::vector<float> upper;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = i; j < 3; ++j) add(S(i, j), &upper);
-  }
-  human->covariance_C.push_back(upper);
+  human->covariance_C.push_back(FromCovariance(PointCovariance(options, seen.p_C)));
   ++human->num_joints;
 }
 

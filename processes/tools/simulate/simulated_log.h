@@ -10,14 +10,15 @@
 
 namespace airdos {
 
-/// What the frontend and the human tracker would say of a simulated sequence, frame by frame:
+/// What frontend and human tracker would publish for a simulated sequence, frame by frame:
 /// CALIBRATION once a second, STATIC_FEATURES with the odometry as the frontend's pose,
-/// HUMAN_OBSERVATIONS and GROUND_TRUTH. Of objects only people are in it, with the 14 joints that
-/// messages know. Noise of points in m becomes the pixels that it shifts a point by at its depth.
+/// HUMAN_OBSERVATIONS and GROUND_TRUTH. Only people are included, not other objects, with the 14
+/// joints that messages support. Noise of points in m is converted to the pixels by which it shifts
+/// a point at its depth.
 std::vector<std::vector<Envelope>> SimulatedMessages(const SimulatedSequence& sequence,
                                                      std::int64_t session);
 
-/// Writes them as an LCM log, stamped with capture time. Throws InputError or WriteError.
+/// Writes them as an LCM log, stamped with capture times. Throws InputError or WriteError.
 void WriteSimulatedLog(const SimulatedSequence& sequence, const std::string& path);
 
 }  // namespace airdos

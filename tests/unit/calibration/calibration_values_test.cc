@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <cmath>
 #include <string>
 
 #include "common/calibration/calib_json.h"
@@ -13,26 +14,11 @@
 #include "common/dataset/sequence_files.h"
 #include "common/dataset/shibuya_sequence.h"
 #include "common/dataset/stereo_sequence.h"
-#include "common/util/error.h"
+#include "tests/support/input_errors.h"
 #include "tests/support/scratch_folder.h"
 
 namespace airdos {
 namespace {
-
-/// The text of the InputError that `act` throws; empty where it throws none.
-template <class Act>
-std::string ErrorOf(Act act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool Holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 class CalibrationValuesTest : public ::testing::Test {
  protected:
@@ -223,7 +209,8 @@ TEST_F(SequenceValuesTest, KittiPosesAreRowsOfMatrices) {
   EXPECT_LT((pose->rotation * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
   EXPECT_LT((pose->rotation * Eigen::Vector3d::UnitY() + Eigen::Vector3d::UnitX()).norm(), 1e-12);
   folder_.Write("poses.txt", "1 0 0 0 0 1 0 0 0 0 -1 0\n");
-  EXPECT_TRUE(Holds(ErrorOf([&] { ReadKittiPoses(folder_.PathOf("poses.txt")); }), "no rotation"));
+  EXPECT_TRUE(
+      Holds(ErrorOf([&] { ReadKittiPoses(folder_.PathOf("poses.txt")); }), "not a rotation"));
 }
 
 constexpr char kRect[] = "R_rect 0 -1 0 1 0 0 0 0 1\n";
@@ -273,7 +260,7 @@ TEST_F(SequenceValuesTest, KittiTrackingGoesThroughAllTransforms) {
 
   folder_.Write("calib/0004.txt", std::string("R_rect 1 0 0 0 1 0 0 0 -1\n") + kOthers);
   EXPECT_TRUE(Holds(ErrorOf([&] { OpenStereoSequence(folder_.PathOf("image_02/0004")); }),
-                    "0004.txt:1: is no rotation"));
+                    "0004.txt:1: is not a rotation"));
 }
 
 TEST_F(SequenceValuesTest, TheScaleOfTheMapIsThatOfTheFirstRow) {

@@ -78,7 +78,7 @@ TEST_F(CheckFolderTest, ASoundSequenceHasNothingButNotes) {
   EXPECT_EQ(findings_.count(Severity::kWarning), 0) << text;
   EXPECT_NE(text.find("100 % of the keypoints lie in them"), std::string::npos) << text;
   EXPECT_NE(text.find("NED, and visual odometry agrees"), std::string::npos) << text;
-  EXPECT_NE(text.find("10 images a second"), std::string::npos) << text;
+  EXPECT_NE(text.find("10 images per second"), std::string::npos) << text;
 }
 
 TEST_F(CheckFolderTest, WhatIsNoSequenceIsABadArgument) {

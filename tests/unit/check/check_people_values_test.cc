@@ -7,6 +7,8 @@
 
 #include "common/check/check_pairs.h"
 #include "common/check/check_people.h"
+#include "tests/support/input_errors.h"
+#include "tests/support/standing_person.h"
 
 namespace airdos {
 namespace {
@@ -24,10 +26,6 @@ std::string SeverityOf(const FindingList& list, const std::string& kind) {
   return finding.kind.empty() ? "" : NameOf(finding.severity);
 }
 
-bool Holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 StereoCamera Camera(int width, int height) {
   StereoCamera camera;
   camera.width = width;
@@ -39,26 +37,8 @@ using Person = std::vector<BodyKeypoint>;
 
 /// Somebody who faces the camera, COCO-18, the neck at (u, v); in proportion to `size`.
 Person Standing(double u_px, double v_px, double size = 1) {
-  constexpr std::array<std::array<double, 2>, 18> kPlaces = {{{0, -12},
-                                                              {0, 0},
-                                                              {-10, 1},
-                                                              {-14, 18},
-                                                              {-15, 34},
-                                                              {10, 1},
-                                                              {14, 18},
-                                                              {15, 34},
-                                                              {-6, 32},
-                                                              {-7, 58},
-                                                              {-7, 84},
-                                                              {6, 32},
-                                                              {7, 58},
-                                                              {7, 84},
-                                                              {-2, -14},
-                                                              {2, -14},
-                                                              {-4, -13},
-                                                              {4, -13}}};
   Person person;
-  for (const auto& place : kPlaces)
+  for (const auto& place : kStanding)
     person.push_back({u_px + size * place[0], v_px + size * place[1], 0.9});
   return person;
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <tuple>
 
 #include "common/check/check_camera.h"
 #include "common/check/check_files.h"
@@ -14,6 +15,7 @@
 #include "common/check/check_jpeg.h"
 #include "common/check/check_stereo.h"
 #include "common/check/check_times.h"
+#include "tests/support/input_errors.h"
 #include "tests/support/scratch_folder.h"
 
 namespace airdos {
@@ -34,10 +36,6 @@ Finding FirstOf(const FindingList& list, const std::string& kind) {
   return {};
 }
 
-bool Holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 TEST(FindingListValuesTest, CountsEachOnceAndKeepsThreeOfAKind) {
   FindingList list;
   for (int i = 0; i < 2; ++i) list.Warn("a", "x", "the same");
@@ -56,14 +54,6 @@ TEST(FindingListValuesTest, CountsEachOnceAndKeepsThreeOfAKind) {
   list.FailFrom("c", "file:7: why: so");
   EXPECT_EQ(FirstOf(list, "c").where, "file:7");
   EXPECT_EQ(FirstOf(list, "c").what, "why: so");
-}
-
-TEST(QuantileValuesTest, IsTheFirstThatSoManyDoNotExceed) {
-  EXPECT_EQ(Quantile({40, 10, 30, 20}, 0.5), 20);
-  EXPECT_EQ(Quantile({40, 10, 30, 20}, 0.51), 30);
-  EXPECT_EQ(Quantile({40, 10, 30, 20}, 0), 10);
-  EXPECT_EQ(Quantile({40, 10, 30, 20}, 1), 40);
-  EXPECT_EQ(Quantile({}, 0.5), 0);
 }
 
 FindingList Timed(const std::vector<std::int64_t>& utimes) {
@@ -95,7 +85,7 @@ TEST(CheckTimesValuesTest, AGapIsFromHalfAnIntervalMoreOn) {
 TEST(CheckTimesValuesTest, OrderIsAnErrorForEachImage) {
   const FindingList list = Timed({0, 100000, 100000, 50000, 200000});
   EXPECT_EQ(list.count(Severity::kError), 2);
-  EXPECT_TRUE(Holds(list.findings()[0].what, "image 2 has the time of the one before"));
+  EXPECT_TRUE(Holds(list.findings()[0].what, "image 2 has the same time as the previous one"));
   EXPECT_TRUE(Holds(list.findings()[1].what, "image 3 comes 0.05 s before"));
 }
 

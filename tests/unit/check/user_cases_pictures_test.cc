@@ -129,7 +129,7 @@ TEST_F(UserCases, PicturesASoundSequenceHasNothingButNotes) {
   for (const auto depth : {CheckOptions::Depth::kFull, CheckOptions::Depth::kQuick}) {
     const std::string text = Check(depth);
     EXPECT_EQ(findings_.count(Severity::kError) + findings_.count(Severity::kWarning), 0) << text;
-    EXPECT_EQ(text.find("pictures of 5 of 14 frames were looked at") != std::string::npos,
+    EXPECT_EQ(text.find("pictures of 5 of 14 frames were checked") != std::string::npos,
               depth == CheckOptions::Depth::kFull);
     EXPECT_NE(text.find("100 % have a positive disparity"), std::string::npos) << text;
   }
@@ -226,7 +226,7 @@ TEST_F(UserCases, Case50MasksAsNumpyArrays) {
 TEST_F(UserCases, Case51MasksOfEverythingOrNothing) {
   for (cv::Mat& mask : sequence_.masks) mask.setTo(1, mask == 0);
   sequence_.Write(folder_);
-  Expect(Severity::kError, "masks.coverage", "", "everything has a class");
+  Expect(Severity::kError, "masks.coverage", "", "a class map");
   for (cv::Mat& mask : sequence_.masks) mask.setTo(0);
   sequence_.Write(folder_);
   Expect(Severity::kError, "masks.empty", "", "no mask marks anybody");
@@ -384,7 +384,7 @@ TEST_F(UserCases, Case70iFlagsAndOtherOrdersOfJoints) {
   change([](SmallSequence::Row* row) {
     for (std::size_t j = 0; j < row->size(); ++j) (*row)[j][2] = j % 3 == 0 ? 1 : 2;
   });
-  Expect(Severity::kWarning, "keypoints.flags", "alphapose_0", "flags of visibility");
+  Expect(Severity::kWarning, "keypoints.flags", "alphapose_0", "visibility flags");
   change([](SmallSequence::Row* row) {
     for (auto& point : *row) point[2] = 1;
   });

@@ -2,23 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-
-#include "common/util/error.h"
+#include "tests/support/input_errors.h"
 
 namespace airdos {
 namespace {
 
 constexpr char kText[] = "a:\n  count: 3\n  ratio: 0.5\nmode: fast\nflag: true\n";
-
-std::string MessageOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(ConfigReaderTest, ReadsEachType) {
   ConfigReader reader = ConfigReader::FromString(kText, "x.yaml");
@@ -39,19 +28,19 @@ TEST(ConfigReaderTest, NamesFileKeyAndValue) {
   ConfigReader reader = ConfigReader::FromString(kText, "x.yaml");
   int count = 0;
   double ratio = 0;
-  EXPECT_EQ(MessageOf([&] { reader.Read("a.count", &count, 5, 10); }),
+  EXPECT_EQ(ErrorOf([&] { reader.Read("a.count", &count, 5, 10); }),
             "x.yaml: key 'a.count' with value '3': must lie between 5 and 10");
-  EXPECT_EQ(MessageOf([&] { reader.Read("mode", &ratio, 0, 1); }),
+  EXPECT_EQ(ErrorOf([&] { reader.Read("mode", &ratio, 0, 1); }),
             "x.yaml: key 'mode' with value 'fast': must be a number");
-  EXPECT_EQ(MessageOf([&] { reader.Read("a.none", &ratio, 0, 1); }),
+  EXPECT_EQ(ErrorOf([&] { reader.Read("a.none", &ratio, 0, 1); }),
             "x.yaml: key 'a.none' is missing");
-  EXPECT_EQ(MessageOf([&] { reader.Finish(); }),
+  EXPECT_EQ(ErrorOf([&] { reader.Finish(); }),
             "x.yaml: key 'a.ratio' with value '0.5': there is no such key");
-  EXPECT_EQ(MessageOf([&] { reader.Override("a.nowhere=4"); }),
+  EXPECT_EQ(ErrorOf([&] { reader.Override("a.nowhere=4"); }),
             "x.yaml: key 'a.nowhere' with value '4': there is no such key");
-  EXPECT_EQ(MessageOf([&] { ConfigReader::FromFile("/nowhere/y.yaml"); }),
+  EXPECT_EQ(ErrorOf([&] { ConfigReader::FromFile("/nowhere/y.yaml"); }),
             "/nowhere/y.yaml: cannot be read: No such file or directory");
-  EXPECT_EQ(MessageOf([&] { ConfigReader::FromString("a: [", "z.yaml"); }).substr(0, 12),
+  EXPECT_EQ(ErrorOf([&] { ConfigReader::FromString("a: [", "z.yaml"); }).substr(0, 12),
             "z.yaml: line");
 }
 

@@ -3,29 +3,20 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/dataset/sequence_files.h"
 #include "common/dataset/shibuya_sequence.h"
 #include "common/dataset/stereo_sequence.h"
-#include "common/util/error.h"
+#include "tests/support/input_errors.h"
 
 namespace airdos {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string MessageOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 /// A folder that lives as long as one test.
 class DatasetTest : public ::testing::Test {
@@ -58,7 +49,7 @@ class DatasetTest : public ::testing::Test {
     }
   }
   std::string OpenMessage() const {
-    return MessageOf([&] { OpenStereoSequence(folder_.string()); });
+    return ErrorOf([&] { OpenStereoSequence(folder_.string()); });
   }
 
   fs::path folder_;
@@ -164,14 +155,14 @@ TEST_F(DatasetTest, LendsThePublicCalibrationOnlyWhereItIsAskedFor) {
   const auto sequence = OpenStereoSequence(folder_.string(), {kPublicCalibration});
   EXPECT_EQ(sequence->camera().fx_px, 772.5483399593904);
   EXPECT_EQ(sequence->camera().baseline_m, 0.25);
-  EXPECT_NE(MessageOf([&] {
+  EXPECT_NE(ErrorOf([&] {
               OpenStereoSequence(folder_.string(), {"zed"});
-            }).find("calibration 'zed': is not known"),
+            }).find("calibration 'zed': is unknown"),
             std::string::npos);
   WriteImages("image_0", "image_1", 1, 320, 240);
-  EXPECT_NE(MessageOf([&] {
+  EXPECT_NE(ErrorOf([&] {
               OpenStereoSequence(folder_.string(), {kPublicCalibration});
-            }).find("is not of the public set"),
+            }).find("is not that of the public data set"),
             std::string::npos);
 }
 
@@ -181,9 +172,9 @@ TEST_F(DatasetTest, NamesFileAndLineOfBadKeypoints) {
   Write("alphapose_0/000000.txt", PersonRow(1) + "1 2 3\n");
   const auto sequence = OpenStereoSequence(folder_.string());
   const std::string where = Path("alphapose_0/000000.txt") + ":2: ";
-  EXPECT_EQ(MessageOf([&] { sequence->Load(0); }).find(where + "holds 3 numbers"), 0u);
+  EXPECT_EQ(ErrorOf([&] { sequence->Load(0); }).find(where + "holds 3 numbers"), 0u);
   Write("alphapose_0/000000.txt", PersonRow(1) + "1 nan 3\n");
-  EXPECT_EQ(MessageOf([&] { sequence->Load(0); }), where + "'nan' is not a finite number");
+  EXPECT_EQ(ErrorOf([&] { sequence->Load(0); }), where + "'nan' is not a finite number");
 }
 
 TEST_F(DatasetTest, NamesWhatIsWrongWithTheFolder) {
@@ -193,7 +184,7 @@ TEST_F(DatasetTest, NamesWhatIsWrongWithTheFolder) {
   EXPECT_EQ(OpenMessage().find(Path("times.txt") + ": holds 1 times for 2 images"), 0u);
   Write("times.txt", "2\n1\n");
   EXPECT_EQ(OpenMessage(),
-            Path("times.txt") + ":2: time '1' does not come after the one before, '2'");
+            Path("times.txt") + ":2: time '1' does not come after the previous one, '2'");
   Write("times.txt", "0\n1\n");
   Write("calib.json", R"({"fx": 500, "cx": 321, "cy": 181, "baseline_m": 0.2})");
   EXPECT_EQ(OpenMessage().find(Path("calib.json") + ": key 'fy' is missing"), 0u);
@@ -204,7 +195,7 @@ TEST_F(DatasetTest, NamesWhatIsWrongWithTheFolder) {
   Write("calib.json", "{");
   EXPECT_EQ(OpenMessage().find(Path("calib.json") + ":1: column 2: "), 0u) << OpenMessage();
   Write("calib.json", "[1]");
-  EXPECT_EQ(OpenMessage().find(Path("calib.json") + ": is no JSON object"), 0u);
+  EXPECT_EQ(OpenMessage().find(Path("calib.json") + ": is not a JSON object"), 0u);
   WriteCalibration();
   Write("gt_pose.txt", "0 1 2 3 0 0 0 1\n0.1 1 2 3 0 0 0 2\n");
   EXPECT_EQ(OpenMessage(), Path("gt_pose.txt") + ":2: the quaternion is not of length 1");
@@ -221,7 +212,7 @@ TEST_F(DatasetTest, SaysThatAnImageIsNone) {
   WriteCalibration();
   Write("image_1/000001.jpg", "no image");
   const auto sequence = OpenStereoSequence(folder_.string());
-  EXPECT_EQ(MessageOf([&] { sequence->Load(1); }),
+  EXPECT_EQ(ErrorOf([&] { sequence->Load(1); }),
             Path("image_1/000001.jpg") + ": is neither a JPEG nor a PNG file");
 }
 
@@ -312,7 +303,7 @@ class KittiTrackingTest : public DatasetTest {
   }
   std::string Sequence() const { return Path("training/image_02/0013"); }
   std::string Message() const {
-    return MessageOf([&] { OpenStereoSequence(Sequence()); });
+    return ErrorOf([&] { OpenStereoSequence(Sequence()); });
   }
 };
 
@@ -376,7 +367,7 @@ TEST_F(KittiTrackingTest, NamesWhatIsWrong) {
   Write("training/calib/0013.txt",
         "P2: 700 0 320 70 0 700 180 0 0 0 1 0\nP3: 700 0 320 -280 0 700 180 0 0 0 1 0\n"
         "R_rect 1 0 0 0 1 0 0 0 2\n");
-  EXPECT_NE(Message().find("calib/0013.txt:3: is no rotation"), std::string::npos) << Message();
+  EXPECT_NE(Message().find("calib/0013.txt:3: is not a rotation"), std::string::npos) << Message();
 }
 
 // The sequences that the project is measured on.

@@ -10,24 +10,11 @@
 #include "common/dataset/sequence_files.h"
 #include "common/dataset/times_file.h"
 #include "common/util/error.h"
+#include "tests/support/input_errors.h"
 #include "tests/support/scratch_folder.h"
 
 namespace airdos {
 namespace {
-
-template <class Act>
-std::string ErrorOf(Act act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool Holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 using Numbers = std::vector<std::uint64_t>;
 
@@ -121,7 +108,7 @@ TEST_F(ImageReadersValuesTest, ASecondSeriesIsARivalFromAQuarterOn) {
   folder_.Write("other0.png");
   EXPECT_EQ(ListImages(folder_.path()).files.size(), 8u);
   folder_.Write("other1.png");
-  EXPECT_TRUE(Holds(ErrorOf([&] { ListImages(folder_.path()); }), "two forms of names"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { ListImages(folder_.path()); }), "two kinds of names"));
   folder_.Write("left8.png");
   const ImageNames names = ListImages(folder_.path());
   EXPECT_EQ(names.files.size(), 9u);
@@ -283,8 +270,8 @@ TEST(ImageFileValuesTest, HowSizesDiffer) {
   EXPECT_TRUE(Holds(text(360, 640), "turned by 90"));
   EXPECT_FALSE(Holds(text(360, 200), "turned"));
   EXPECT_TRUE(Holds(text(320, 180), "0.5 times as large"));
-  EXPECT_TRUE(Holds(text(320, 90), "other proportions"));
-  EXPECT_TRUE(Holds(text(160, 180), "other proportions"));
+  EXPECT_TRUE(Holds(text(320, 90), "another aspect ratio"));
+  EXPECT_TRUE(Holds(text(160, 180), "another aspect ratio"));
   EXPECT_TRUE(Holds(text(320, 180), "has 320 x 180 px, x 640 x 360 px"));
 }
 

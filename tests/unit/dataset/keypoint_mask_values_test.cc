@@ -9,25 +9,12 @@
 #include "common/human/body_keypoints.h"
 #include "common/util/error.h"
 #include "common/util/image_header.h"
+#include "tests/support/input_errors.h"
 #include "tests/support/palette_png.h"
 #include "tests/support/scratch_folder.h"
 
 namespace airdos {
 namespace {
-
-template <class Act>
-std::string ErrorOf(Act act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool Holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 /// Joint j at (j + 0.5, 100 + j) with confidence 0.01 j, but for the first two.
 std::string Row(int num_joints) {
@@ -77,7 +64,7 @@ TEST_F(KeypointMaskValuesTest, TwoLayoutsAreRefusedWithBothNames) {
   const std::string c = folder_.Write("c.txt", Row(26));
   const std::string error = ErrorOf([&] { FindLayout({a, b, c}); });
   EXPECT_EQ(error, c + ": holds people in Halpe-26, but " + a +
-                       " in COCO-18; one layout a data set is wanted");
+                       " in COCO-18; all of a data set must have the same layout");
 }
 
 std::vector<std::uint8_t> Png(const cv::Mat& picture) {
@@ -252,11 +239,11 @@ TEST_F(KeypointMaskValuesTest, DataSetsBelowAreListedUpToTwelve) {
   make(0);
   EXPECT_TRUE(Holds(ExplainFolder(folder_.path()), "the data set is the folder below it"));
   make(1);
-  EXPECT_TRUE(Holds(ExplainFolder(folder_.path()), "holds 2 data sets: s10, s11; give"));
+  EXPECT_TRUE(Holds(ExplainFolder(folder_.path()), "holds 2 data sets: s10, s11; choose"));
   for (int i = 2; i < 12; ++i) make(i);
-  EXPECT_TRUE(Holds(ExplainFolder(folder_.path()), "s20, s21; give"));
+  EXPECT_TRUE(Holds(ExplainFolder(folder_.path()), "s20, s21; choose"));
   make(12);
-  EXPECT_TRUE(Holds(ExplainFolder(folder_.path()), "s20, s21 and 1 more; give"));
+  EXPECT_TRUE(Holds(ExplainFolder(folder_.path()), "s20, s21 and 1 more; choose"));
 }
 
 TEST(SideSwapValuesTest, EachConcernsItsJointsInBothDirections) {

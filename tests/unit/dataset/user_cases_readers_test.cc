@@ -164,7 +164,7 @@ TEST_F(UserCases, Case41NamesWithASecondNumberOrWithout) {
   names = order_of({"b", "a", "c"});
   EXPECT_EQ(names.files, (std::vector<std::string>{"a.png", "b.png", "c.png"}));
   ASSERT_EQ(names.notes.size(), 1u);
-  EXPECT_NE(names.notes[0].find("in order of text"), std::string::npos);
+  EXPECT_NE(names.notes[0].find("in alphabetical order"), std::string::npos);
   EXPECT_THROW(order_of({"a1", "b2", "c3"}), InputError) << "no common form";
   EXPECT_THROW(order_of({"a1", "a2", "b1", "b2"}), InputError) << "two series";
 }
@@ -217,7 +217,7 @@ TEST_F(UserCases, Case59cAnd59eCopiesAreNamedAndNotTaken) {
 TEST_F(UserCases, Case59TwoFilesOfOneImageAreRefused) {
   WriteSequence(5);
   WriteImage("image_0/000003.jpg");
-  ExpectRefusal({"image_0: two files of one image", "'000003.jpg' and '000003.png'"});
+  ExpectRefusal({"image_0: two files for the same image", "'000003.jpg' and '000003.png'"});
   fs::remove(folder_ / "image_0/000003.jpg");
   WriteImage("image_0/3.png");
   ExpectRefusal({"'000003.png' and '3.png'"});
@@ -308,7 +308,7 @@ TEST_F(UserCases, Case63OtherUnitsOfTimesAreNamed) {
     WriteLines("times.txt", 6, [&](int i) { return std::to_string(first + i * step); });
   };
   write(kEurocNs, 50000000);
-  ExpectRefusal({"times.txt: the times are in ns", "wanted in s"});
+  ExpectRefusal({"times.txt: the times are in ns", "expected in s"});
   write(0, 50000000);
   ExpectRefusal({"the times are in ns"});
   write(kEurocNs / 1000000, 50);
@@ -320,7 +320,7 @@ TEST_F(UserCases, Case63OtherUnitsOfTimesAreNamed) {
 TEST_F(UserCases, Case63bMicrosecondsAreNamed) {
   WriteSequence(6);
   WriteLines("times.txt", 6, [](int i) { return std::to_string(kEurocNs / 1000 + i * 50000); });
-  ExpectRefusal({"times.txt: the times are in us", "wanted in s"});
+  ExpectRefusal({"times.txt: the times are in us", "expected in s"});
 }
 
 TEST_F(UserCases, Case63TimesThatRepeatAreSaid) {
@@ -328,7 +328,7 @@ TEST_F(UserCases, Case63TimesThatRepeatAreSaid) {
   WriteLines("times.txt", 6, [](int) { return "1403636579"; });
   ExpectRefusal({"times.txt: all 6 times are '1403636579'"});
   WriteLines("times.txt", 6, [](int i) { return std::to_string(1403636579 + i / 3); });
-  ExpectRefusal({"times.txt:2: time '1403636579' does not come after the one before",
+  ExpectRefusal({"times.txt:2: time '1403636579' does not come after the previous one",
                  "4 of 6 repeat: written with too few digits?"});
 }
 
@@ -365,7 +365,7 @@ TEST_F(UserCases, Case65GroundTruthOfEurocIsNamed) {
   WriteSequence(3);
   Write("gt_pose.txt",
         "#timestamp, p_x\n1403636580838555648,4.6,-1.7,0.8,0.5,-0.1,-0.8,-0.1,0,0\n");
-  ExpectRefusal({"gt_pose.txt:2: ", "EuRoC's state_groundtruth has it (ns, position, q_w first)"});
+  ExpectRefusal({"gt_pose.txt:2: ", "EuRoC's state_groundtruth (ns, position, q_w first)"});
   Write("gt_pose.txt", "1403636580838555648 4.6 -1.7 0.8 1 0 0 0\n");
   ExpectRefusal({"gt_pose.txt:1: the times are in ns", "q_w first"});
   Write("gt_pose.txt", "1403636580.8 4.6 -1.7 0.8 0 0 0 1\n");
@@ -456,7 +456,7 @@ TEST_F(UserCases, Case66jCalibratedForAnotherResolution) {
   WriteCalibration(16, 9);
   ExpectFinding("calib.json", "error", "half as large as these of 64 x 36 px");
   WriteCalibration(64, 36);
-  ExpectRefusal({"it is that of images twice as large"});
+  ExpectRefusal({"it belongs to images twice as large"});
   WriteCalibration(48, 27);
   ExpectFinding("calib.json", "error", "1.5 times as large");
   Write("calib.json",
@@ -637,7 +637,7 @@ TEST_F(UserCases, Case72bTheFolderOnAnotherLevelIsNamed) {
             std::string::npos);
   EXPECT_NE(Refusal().find(Path("in/Standing02")), std::string::npos) << "two levels";
   EXPECT_NE(Refusal("in/Standing02/image_0")
-                .find("a part of the data set " + Path("in/Standing02") + "; give that"),
+                .find("part of the data set " + Path("in/Standing02") + "; use that"),
             std::string::npos);
   fs::copy(outer / "Standing02", outer / "Crossing", fs::copy_options::recursive);
   EXPECT_NE(Refusal("in").find("holds 2 data sets: Crossing, Standing02"), std::string::npos)

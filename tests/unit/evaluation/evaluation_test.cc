@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -20,19 +19,10 @@
 #include "common/evaluation/trajectory_file.h"
 #include "common/evaluation/trajectory_plot.h"
 #include "common/evaluation/trajectory_report.h"
-#include "common/util/error.h"
+#include "tests/support/input_errors.h"
 
 namespace airdos {
 namespace {
-
-std::string MessageOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 Eigen::Matrix3d Rotation(double angle_rad, const Eigen::Vector3d& axis) {
   return Eigen::AngleAxisd(angle_rad, axis.normalized()).toRotationMatrix();
@@ -107,15 +97,13 @@ TEST(AssociateTest, RowsByNumber) {
   Trajectory truth = {false, Bend(5)};
   EXPECT_EQ(Associate(estimate, truth, 0.01).ground_truth.size(), 5u);
   estimate.poses.pop_back();  // it may be any row that lacks
-  EXPECT_NE(MessageOf([&] { Associate(estimate, truth, 0.01); }).find("has 4 rows"),
+  EXPECT_NE(ErrorOf([&] { Associate(estimate, truth, 0.01); }).find("has 4 rows"),
             std::string::npos);
-  EXPECT_NE(MessageOf([&] { Associate(truth, estimate, 0.01); }).find("has 4: "),
-            std::string::npos);
+  EXPECT_NE(ErrorOf([&] { Associate(truth, estimate, 0.01); }).find("has 4: "), std::string::npos);
   estimate.num_lost_rows = 1;  // a row of nan
   EXPECT_EQ(Associate(estimate, truth, 0.01).ground_truth.size(), 4u);
   truth.has_times = true;
-  EXPECT_NE(MessageOf([&] { Associate(estimate, truth, 0.01); }).find("--times"),
-            std::string::npos);
+  EXPECT_NE(ErrorOf([&] { Associate(estimate, truth, 0.01); }).find("--times"), std::string::npos);
 }
 
 TEST(AlignmentTest, FindsTheTransform) {
@@ -338,11 +326,11 @@ TEST(EvaluateTrajectoryTest, RefusesWhatCannotBeCompared) {
   const Trajectory truth = {true, Bend(50)};
   Trajectory late = truth;
   for (TrajectoryPose& pose : late.poses) pose.time_s += 100;
-  EXPECT_NE(MessageOf([&] { EvaluateTrajectory(late, truth, {}); }).find("only 0 of 50"),
+  EXPECT_NE(ErrorOf([&] { EvaluateTrajectory(late, truth, {}); }).find("only 0 of 50"),
             std::string::npos);
   Trajectory still = truth;
   for (TrajectoryPose& pose : still.poses) pose = At(pose.time_s);
-  EXPECT_NE(MessageOf([&] { EvaluateTrajectory(still, truth, {}); }).find("--gt-axes"),
+  EXPECT_NE(ErrorOf([&] { EvaluateTrajectory(still, truth, {}); }).find("--gt-axes"),
             std::string::npos);
 }
 
@@ -356,7 +344,7 @@ class TrajectoryFileTest : public ::testing::Test {
   void TearDown() override { std::filesystem::remove(path_); }
   std::string MessageFor(const std::string& text) const {
     std::ofstream(path_) << text;
-    return MessageOf([&] { ReadTrajectory(path_); });
+    return ErrorOf([&] { ReadTrajectory(path_); });
   }
   std::string path_;
 };
@@ -376,17 +364,18 @@ TEST_F(TrajectoryFileTest, ReadsBothFormats) {
 }
 
 TEST_F(TrajectoryFileTest, NamesTheLine) {
-  EXPECT_EQ(MessageFor(""), path_ + ": holds no pose");
-  EXPECT_EQ(MessageFor("1 2 3\n"),
-            path_ +
-                ":1: holds 3 numbers a row: wanted are 8 (t x y z qx qy qz qw, TUM), 12 (KITTI), "
-                "17 (EuRoC's state_groundtruth), 7 (x y z qx qy qz qw, TartanAir) or 4 (t x y z)");
+  EXPECT_EQ(MessageFor(""), path_ + ": contains no pose");
+  EXPECT_EQ(
+      MessageFor("1 2 3\n"),
+      path_ +
+          ":1: holds 3 numbers per row: expected are 8 (t x y z qx qy qz qw, TUM), 12 (KITTI), "
+          "17 (EuRoC's state_groundtruth), 7 (x y z qx qy qz qw, TartanAir) or 4 (t x y z)");
   EXPECT_EQ(MessageFor("1 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 x\n"),
             path_ + ":2: 'x' is not a finite number");
   EXPECT_EQ(MessageFor("2 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1\n"),
             path_ +
-                ":2: time 1 lies before that of the row above; put the rows in the order of "
-                "their times (sort -g), each once");
+                ":2: time 1 is before that of the row above; sort the rows by time (sort -g), "
+                "without duplicates");
   EXPECT_EQ(MessageFor("2 1 2 3 0 0 0 2\n"),
             path_ +
                 ":1: the quaternion is not of length 1 but 2.000000; the columns are not those "

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <string>
 
 #include "common/evaluation/alignment.h"
@@ -12,26 +13,13 @@
 #include "common/evaluation/trajectory_report.h"
 #include "common/evaluation/trajectory_times.h"
 #include "common/util/error.h"
+#include "tests/support/input_errors.h"
 #include "tests/support/scratch_folder.h"
 
 namespace airdos {
 namespace {
 
 using Eigen::Vector3d;
-
-template <class Act>
-std::string ErrorOf(Act act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool Holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 class TrajectoryValuesTest : public ::testing::Test {
  protected:

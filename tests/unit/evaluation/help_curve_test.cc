@@ -6,11 +6,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "common/evaluation/help_curve_plot.h"
-#include "common/util/error.h"
+#include "tests/support/input_errors.h"
 
 namespace airdos {
 namespace {
@@ -30,15 +29,6 @@ std::vector<CappedRun> SomeRuns() {
           Run("c", "mask_only", 5, 0.04, 0), Run("b", "mask_only", 5, 0.05, 20),
           Run("a", "on", {}, 0.002, 0),      Run("a", "mask_only", {}, 0.001, 0),
           Run("b", "on", {}, 0.001, 1),      Run("b", "mask_only", {}, 0.001, 0)};
-}
-
-std::string MessageOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(HelpCurve, HandWorkedMediansAndRatios) {
@@ -67,16 +57,16 @@ TEST(HelpCurve, HandWorkedMediansAndRatios) {
 TEST(HelpCurve, RefusesWhatHasNothingToCompareWith) {
   std::vector<CappedRun> runs = SomeRuns();
   runs.erase(runs.begin());
-  EXPECT_EQ(MessageOf([&] { ComputeHelpCurve(runs); }),
+  EXPECT_EQ(ErrorOf([&] { ComputeHelpCurve(runs); }),
             "sequence b, cap 5: no run with on to compare with");
   runs = SomeRuns();
   runs.push_back(runs[0]);
-  EXPECT_NE(MessageOf([&] { ComputeHelpCurve(runs); }).find("is there twice"), std::string::npos);
+  EXPECT_NE(ErrorOf([&] { ComputeHelpCurve(runs); }).find("is there twice"), std::string::npos);
   runs = SomeRuns();
   runs[0].mode = "off";
-  EXPECT_NE(MessageOf([&] { ComputeHelpCurve(runs); }).find("must be mask_only or on"),
+  EXPECT_NE(ErrorOf([&] { ComputeHelpCurve(runs); }).find("must be mask_only or on"),
             std::string::npos);
-  EXPECT_EQ(MessageOf([] { ComputeHelpCurve({}); }), "no run at all");
+  EXPECT_EQ(ErrorOf([] { ComputeHelpCurve({}); }), "no run at all");
 }
 
 TEST(HelpCurve, IsWrittenAndDrawn) {
@@ -123,12 +113,13 @@ TEST(HelpCurve, ReadsRunsAndNamesTheLine) {
   EXPECT_EQ(runs[1].cap, std::nullopt);
   EXPECT_EQ(runs[0].figures, (RunFigures{1, 2, 3, 10}));
   std::ofstream(path) << R"({"sequence": "a", "mode": "on"})";
-  EXPECT_NE(MessageOf([&] { ReadCappedRuns(path); }).find(path + ":1: "), std::string::npos);
+  EXPECT_NE(ErrorOf([&] { ReadCappedRuns(path); }).find(path + ":1: "), std::string::npos);
   // Found by fuzzing: a number that no int holds.
   std::ofstream(path) << R"({"sequence": "a", "mode": "on", "max_observations": 3e98, )" << row;
-  EXPECT_NE(MessageOf([&] { ReadCappedRuns(path); }).find("is no whole number"), std::string::npos);
+  EXPECT_NE(ErrorOf([&] { ReadCappedRuns(path); }).find("is not a whole number"),
+            std::string::npos);
   std::filesystem::remove(path);
-  EXPECT_EQ(MessageOf([&] { ReadCappedRuns(path); }),
+  EXPECT_EQ(ErrorOf([&] { ReadCappedRuns(path); }),
             path + ": cannot be read: No such file or directory");
 }
 

@@ -146,7 +146,7 @@ TEST_F(PeopleReportTest, IsWritten) {
   EXPECT_NEAR(json["segment_length_error"]["within_5_percent"], 50, 1e-9);
   EXPECT_TRUE(json["joint_error_by_depth"]["from 12 m"]["measured_m"].is_null());
   const std::string text = ToTable(report);
-  EXPECT_NE(text.find("1 switches, 0.50 a person; IDF1 0.917"), std::string::npos) << text;
+  EXPECT_NE(text.find("1 switches, 0.50 per person; IDF1 0.917"), std::string::npos) << text;
 }
 
 TEST(MatchPeople, ByTheImageWhateverTheDepth) {
@@ -219,9 +219,9 @@ TEST(PeopleFiles, AreReadAndErrorsNameTheLine) {
     std::ofstream(path) << changed << "\n";
     return message([&] { ReadPeople(path); });
   };
-  EXPECT_NE(with("\"1\"", "\"-1\"").find("'-1' is no joint"), std::string::npos);
-  EXPECT_NE(with("\"13\"", "\"14\"").find("'14' is no segment"), std::string::npos);
-  EXPECT_NE(with("3", "1e99").find("'1e+99' is no whole number"), std::string::npos);
+  EXPECT_NE(with("\"1\"", "\"-1\"").find("'-1' is not a joint"), std::string::npos);
+  EXPECT_NE(with("\"13\"", "\"14\"").find("'14' is not a segment"), std::string::npos);
+  EXPECT_NE(with("3", "1e99").find("'1e+99' is not a whole number"), std::string::npos);
   EXPECT_EQ(with("3", "3.0"), "no error");
   std::filesystem::remove(path);
 }

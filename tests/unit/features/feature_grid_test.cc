@@ -34,7 +34,7 @@ TEST(FeatureGrid, FindsWhatBruteForceFinds) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> place(-60, 360);  // beyond the image as well
   for (int query = 0; query < 300; ++query) {
-    const Eigen::Vector2d uv_px(place(random), place(random));
+    const Eigen::Vector2d uv_px{place(random), place(random)};
     for (const double radius_px : {0.0, 3.0, 16.0, 75.5, 1000.0}) {
       std::vector<int> expected;
       for (std::size_t i = 0; i < features.size(); ++i) {

@@ -9,9 +9,9 @@
 
 #include "common/features/camera_motion_filter.h"
 #include "common/features/feature_extractor.h"
+#include "common/features/feature_stereo_matcher.h"
 #include "common/features/landmark_judge.h"
 #include "common/features/people_pose.h"
-#include "common/features/stereo_matcher.h"
 #include "tests/support/rendered_scene.h"
 
 // Limits of the front end's parts: just below and just above.
@@ -90,7 +90,7 @@ TEST(StereoLevels, PartnersAreALevelApartAtMost) {
 
 TEST(StereoLevels, PartnersDifferBySoManyBitsAtMost) {
   FeatureStereoMatcherOptions options;
-  options.max_hamming = 75;
+  options.max_hamming_bits = 75;
   EXPECT_TRUE(Matches(kLeft, Partner(0, 0, 75), options));
   EXPECT_FALSE(Matches(kLeft, Partner(0, 0, 76), options));
 }
@@ -150,7 +150,7 @@ TEST(PeoplePoseWeight, APersonCountsLessBeyondOneAndAHalfSigma) {
   const PosePrior prior = IsotropicPrior(T_W_C, 1e-9, 1e-9);  // stays where it is
   // Two joints, each `sigmas` off in each axis.
   const auto information = [&](double sigmas) {
-    PersonConstraint person;
+    HumanConstraint person;
     person.p_C = {{0.5, 0, 4}, {0.3, 0.6, 4.2}};
     for (const Eigen::Vector3d& p_C : person.p_C) {
       person.p_W.push_back(T_W_C * p_C + 0.1 * sigmas * Eigen::Vector3d(1, -1, 1));

@@ -41,8 +41,8 @@ Eigen::MatrixXd CovarianceOf(int num_joints, double sigma_own_m, double sigma_sh
 }
 
 /// Somebody of six joints around `place_C`, seen from TruePose() where predicted.
-PersonConstraint Person(const Eigen::Vector3d& place_C, double sigma_own_m, double sigma_shared_m) {
-  PersonConstraint person;
+HumanConstraint Person(const Eigen::Vector3d& place_C, double sigma_own_m, double sigma_shared_m) {
+  HumanConstraint person;
   for (const Eigen::Vector3d& offset :
        {Eigen::Vector3d(0, -0.5, 0), Eigen::Vector3d(0.18, -0.5, 0.02),
         Eigen::Vector3d(-0.18, -0.5, -0.02), Eigen::Vector3d(0.12, 0, 0),
@@ -54,7 +54,7 @@ PersonConstraint Person(const Eigen::Vector3d& place_C, double sigma_own_m, doub
   return person;
 }
 
-std::vector<PersonConstraint> Three(double sigma_own_m, double sigma_shared_m) {
+std::vector<HumanConstraint> Three(double sigma_own_m, double sigma_shared_m) {
   return {Person({-1.5, 0, 4}, sigma_own_m, sigma_shared_m),
           Person({0.5, 0.2, 6}, sigma_own_m, sigma_shared_m),
           Person({2, 0, 5}, sigma_own_m, sigma_shared_m)};
@@ -77,7 +77,7 @@ TEST(PeoplePose, PeopleWhoAreWellKnownTellWhereTheCameraIs) {
 }
 
 /// Whitened residuals of the prior and of everybody, at T_W_C.
-Eigen::VectorXd Residuals(const PosePrior& prior, const std::vector<PersonConstraint>& people,
+Eigen::VectorXd Residuals(const PosePrior& prior, const std::vector<HumanConstraint>& people,
                           const Se3& T_W_C) {
   std::vector<double> all;
   const auto add = [&all](const Eigen::MatrixXd& covariance, const Eigen::VectorXd& r) {
@@ -85,7 +85,7 @@ Eigen::VectorXd Residuals(const PosePrior& prior, const std::vector<PersonConstr
     all.insert(all.end(), whitened.begin(), whitened.end());
   };
   add(prior.covariance, Boxminus(T_W_C, prior.T_W_C));
-  for (const PersonConstraint& person : people) {
+  for (const HumanConstraint& person : people) {
     Eigen::VectorXd r(static_cast<Eigen::Index>(3 * person.p_C.size()));
     for (std::size_t i = 0; i < person.p_C.size(); ++i)
       r.segment<3>(static_cast<Eigen::Index>(3 * i)) = T_W_C * person.p_C[i] - person.p_W[i];
@@ -94,7 +94,7 @@ Eigen::VectorXd Residuals(const PosePrior& prior, const std::vector<PersonConstr
   return Eigen::Map<Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
 
-Eigen::MatrixXd Derivative(const PosePrior& prior, const std::vector<PersonConstraint>& people,
+Eigen::MatrixXd Derivative(const PosePrior& prior, const std::vector<HumanConstraint>& people,
                            const Se3& T_W_C) {
   constexpr double kDelta = 1e-6;
   Eigen::MatrixXd J(Residuals(prior, people, T_W_C).size(), 6);
@@ -108,7 +108,7 @@ Eigen::MatrixXd Derivative(const PosePrior& prior, const std::vector<PersonConst
 }
 
 /// The pose of the least sum of squares, by derivatives from central differences.
-Se3 LeastSquares(const PosePrior& prior, const std::vector<PersonConstraint>& people) {
+Se3 LeastSquares(const PosePrior& prior, const std::vector<HumanConstraint>& people) {
   Se3 T_W_C = prior.T_W_C;
   for (int iteration = 0; iteration < 30; ++iteration) {
     const Eigen::MatrixXd J = Derivative(prior, people, T_W_C);
@@ -119,21 +119,21 @@ Se3 LeastSquares(const PosePrior& prior, const std::vector<PersonConstraint>& pe
 }
 
 /// Where people are about as uncertain as the prior; nobody off by much.
-std::vector<PersonConstraint> Noisy(std::uint64_t seed) {
+std::vector<HumanConstraint> Noisy(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0, 0.03);
-  std::vector<PersonConstraint> people = Three(0.04, 0.08);
-  for (PersonConstraint& person : people) {
-    const Eigen::Vector3d shared(normal(random), normal(random), normal(random));
+  std::vector<HumanConstraint> people = Three(0.04, 0.08);
+  for (HumanConstraint& person : people) {
+    const Eigen::Vector3d shared{normal(random), normal(random), normal(random)};
     for (Eigen::Vector3d& p_W : person.p_W)
-      p_W += shared + Eigen::Vector3d(normal(random), normal(random), normal(random));
+      p_W += shared + Eigen::Vector3d{normal(random), normal(random), normal(random)};
   }
   return people;
 }
 
 TEST(PeoplePose, ItIsTheLeastSquaresOfPriorAndPeople) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const std::vector<PersonConstraint> people = Noisy(seed);
+    const std::vector<HumanConstraint> people = Noisy(seed);
     const PeoplePose pose = EstimatePoseFromPeople(PriorOff(), people);
     const Se3 reference = LeastSquares(PriorOff(), people);
     ASSERT_GT(Error(reference, PriorOff().T_W_C), 0.02);
@@ -145,7 +145,7 @@ TEST(PeoplePose, ItIsTheLeastSquaresOfPriorAndPeople) {
 }
 
 TEST(PeoplePose, TheInformationIsThatOfThePeopleAlone) {
-  const std::vector<PersonConstraint> people = Three(0.04, 0.08);
+  const std::vector<HumanConstraint> people = Three(0.04, 0.08);
   const PosePrior prior = IsotropicPrior(TruePose(), 0.2, 0.05);
   const PeoplePose pose = EstimatePoseFromPeople(prior, people);
   const Eigen::MatrixXd J = Derivative(prior, people, TruePose()).bottomRows(3 * 18);
@@ -159,7 +159,7 @@ TEST(PeoplePose, OneJointByHand) {
   // A joint straight ahead, 5 m; the prior knows the turn exactly. Prior and joint are both known
   // to 0.1 m, and the camera sees the joint 8 cm further left than predicted: the camera is 4 cm
   // further right.
-  PersonConstraint person;
+  HumanConstraint person;
   person.p_C = {{-0.08, 0, 5}};
   person.p_W = {{0, 0, 5}};
   person.covariance_W = 0.01 * Eigen::Matrix3d::Identity();
@@ -174,7 +174,7 @@ TEST(PeoplePose, OneJointByHand) {
 TEST(PeoplePose, SomebodyWhoJumpsSaysLittle) {
   const PosePrior prior = IsotropicPrior(TruePose(), 0.2, 0.05);
   const auto error_m = [&prior](double jump_m) {
-    std::vector<PersonConstraint> people = Three(0.03, 0.03);
+    std::vector<HumanConstraint> people = Three(0.03, 0.03);
     for (Eigen::Vector3d& p_W : people[1].p_W) p_W.x() += jump_m;
     const PeoplePose pose = EstimatePoseFromPeople(prior, people);
     return (pose.prior.T_W_C.translation - TruePose().translation).norm();
@@ -186,7 +186,7 @@ TEST(PeoplePose, SomebodyWhoJumpsSaysLittle) {
   // A little off is believed.
   EXPECT_GT(error_m(0.03), 0.2 * 0.03);
 
-  std::vector<PersonConstraint> people = Three(0.03, 0.03);
+  std::vector<HumanConstraint> people = Three(0.03, 0.03);
   const double before = EstimatePoseFromPeople(prior, people).information.trace();
   for (Eigen::Vector3d& p_W : people[1].p_W) p_W.x() += 1;
   const double after = EstimatePoseFromPeople(prior, people).information.trace();
@@ -194,7 +194,7 @@ TEST(PeoplePose, SomebodyWhoJumpsSaysLittle) {
 }
 
 TEST(PeoplePose, ACovarianceThatIsNoneIsLeftOut) {
-  std::vector<PersonConstraint> people = Three(0.03, 0.03);
+  std::vector<HumanConstraint> people = Three(0.03, 0.03);
   const PeoplePose good = EstimatePoseFromPeople(PriorOff(), people);
   people.push_back(Person({0, 0, 3}, 0.03, 0.03));
   people.back().p_W[0].x() += 2;
@@ -205,7 +205,7 @@ TEST(PeoplePose, ACovarianceThatIsNoneIsLeftOut) {
 }
 
 TEST(PeoplePose, NumbersThatAreNoneGiveThePrior) {
-  std::vector<PersonConstraint> people = Three(0.03, 0.03);
+  std::vector<HumanConstraint> people = Three(0.03, 0.03);
   people[0].p_W[2].y() = std::numeric_limits<double>::quiet_NaN();
   const PeoplePose pose = EstimatePoseFromPeople(PriorOff(), people);
   EXPECT_EQ(Error(pose.prior.T_W_C, PriorOff().T_W_C), 0);

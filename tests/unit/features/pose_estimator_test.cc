@@ -42,7 +42,7 @@ std::vector<PoseObservation> Observe(int count, double noise_px, std::uint32_t s
     PoseObservation observation;
     observation.p_W = TruePose() * p_C;
     observation.uvu_px = kCamera.ProjectStereo(p_C) +
-                         noise_px * Eigen::Vector3d(normal(random), normal(random), normal(random));
+                         noise_px * Eigen::Vector3d{normal(random), normal(random), normal(random)};
     observation.has_right = has_right;
     if (!has_right) observation.uvu_px.z() = -1e6;  // must not be looked at
     observations.push_back(observation);
@@ -55,7 +55,7 @@ void AddOutliers(std::vector<PoseObservation>* observations, std::uint32_t seed)
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> far(-60, 60);
   for (std::size_t i = 0; i < observations->size(); ++i) {
-    if (i % 5 < 2) (*observations)[i].uvu_px += Eigen::Vector3d(far(random), far(random), 25);
+    if (i % 5 < 2) (*observations)[i].uvu_px += Eigen::Vector3d{far(random), far(random), 25};
   }
 }
 

@@ -31,7 +31,7 @@ std::vector<PoseObservation> Scattered(const Se3& T_W_C, int num, double sigma_p
   std::vector<PoseObservation> observations;
   for (int i = 0; i < num; ++i) {
     const double z = 6 + 3 * uniform(generator);
-    const Eigen::Vector3d p_C(0.3 * z * uniform(generator), 0.2 * z * uniform(generator), z);
+    const Eigen::Vector3d p_C{0.3 * z * uniform(generator), 0.2 * z * uniform(generator), z};
     observations.push_back(Seen(T_W_C, p_C, sigma_px, i % 2 == 0));
   }
   return observations;

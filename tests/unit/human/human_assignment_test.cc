@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -10,26 +11,26 @@
 namespace airdos {
 namespace {
 
-double TotalCost(const Eigen::MatrixXd& cost, double gate,
+double TotalCost(const Eigen::MatrixXd& cost, double max_cost,
                  const std::vector<std::optional<int>>& partner) {
-  double total = gate / 2 * static_cast<double>(cost.rows() + cost.cols());
+  double total = max_cost / 2 * static_cast<double>(cost.rows() + cost.cols());
   for (std::size_t row = 0; row < partner.size(); ++row) {
-    if (partner[row]) total += cost(static_cast<Eigen::Index>(row), *partner[row]) - gate;
+    if (partner[row]) total += cost(static_cast<Eigen::Index>(row), *partner[row]) - max_cost;
   }
   return total;
 }
 
 // Tries every way of pairing the rows from `row` on.
-double LeastCost(const Eigen::MatrixXd& cost, double gate, Eigen::Index row,
+double LeastCost(const Eigen::MatrixXd& cost, double max_cost, Eigen::Index row,
                  std::vector<std::optional<int>>* partner) {
-  if (row == cost.rows()) return TotalCost(cost, gate, *partner);
-  double least = LeastCost(cost, gate, row + 1, partner);
+  if (row == cost.rows()) return TotalCost(cost, max_cost, *partner);
+  double least = LeastCost(cost, max_cost, row + 1, partner);
   for (int column = 0; column < cost.cols(); ++column) {
     if (std::find(partner->begin(), partner->end(), std::optional<int>(column)) != partner->end()) {
       continue;
     }
     (*partner)[static_cast<std::size_t>(row)] = column;
-    least = std::min(least, LeastCost(cost, gate, row + 1, partner));
+    least = std::min(least, LeastCost(cost, max_cost, row + 1, partner));
     (*partner)[static_cast<std::size_t>(row)].reset();
   }
   return least;

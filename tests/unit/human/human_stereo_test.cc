@@ -6,7 +6,7 @@
 
 #include "common/human/disparity_refiner.h"
 #include "common/human/joint_triangulator.h"
-#include "common/human/stereo_matcher.h"
+#include "common/human/person_pairing.h"
 #include "tests/support/synthetic_people.h"
 
 namespace airdos {
@@ -17,62 +17,63 @@ BodyKeypoints Exact(const Joints3d& joints, bool is_right) {
   return Detect(kTestCamera, joints, is_right, 0, &random);
 }
 
-TEST(StereoMatcher, NobodyAnywhere) {
-  const StereoMatching matching = MatchStereo({}, kTestCamera, {}, {});
-  EXPECT_TRUE(matching.pairs.empty());
+TEST(PersonPairing, NobodyAnywhere) {
+  const PersonPairing pairing = PairPeople({}, kTestCamera, {}, {});
+  EXPECT_TRUE(pairing.pairs.empty());
   const auto person = Exact(WalkingPerson({0, 0, 5}, 0), false);
-  const StereoMatching one_sided = MatchStereo({}, kTestCamera, {person}, {});
+  const PersonPairing one_sided = PairPeople({}, kTestCamera, {person}, {});
   EXPECT_TRUE(one_sided.pairs.empty());
   EXPECT_EQ(one_sided.unpaired_left, std::vector<int>{0});
 }
 
-TEST(StereoMatcher, PairsShuffledPeopleAndLeavesTheOthersAlone) {
+TEST(PersonPairing, PairsShuffledPeopleAndLeavesTheOthersAlone) {
   const auto near = WalkingPerson({-0.6, 0.1, 4}, 0.3);
   const auto middle = WalkingPerson({0.1, 0.1, 6}, 1.2);
   const auto far = WalkingPerson({0.5, 0.1, 9}, 2);
   const auto only_left = WalkingPerson({1.4, 0.1, 5}, 2);
-  const StereoMatching matching = MatchStereo(
+  const PersonPairing pairing = PairPeople(
       {}, kTestCamera,
       {Exact(far, false), Exact(only_left, false), Exact(near, false), Exact(middle, false)},
       {Exact(near, true), Exact(middle, true), Exact(far, true)});
-  ASSERT_EQ(matching.pairs.size(), 3U);
+  ASSERT_EQ(pairing.pairs.size(), 3U);
   const std::vector<int> expected_right = {2, 0, 1};
   const std::vector<double> expected_depth = {9, 4, 6};
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(matching.pairs[i].right, expected_right[i]);
-    EXPECT_EQ(matching.pairs[i].right_swap, SideSwap::kNone);
+    EXPECT_EQ(pairing.pairs[i].right, expected_right[i]);
+    EXPECT_EQ(pairing.pairs[i].right_swap, SideSwap::kNone);
     const double depth_m =
-        kTestCamera.fx_px * kTestCamera.baseline_m / matching.pairs[i].disparity_px;
+        kTestCamera.fx_px * kTestCamera.baseline_m / pairing.pairs[i].disparity_px;
     EXPECT_NEAR(depth_m, expected_depth[i], 0.05);
   }
-  EXPECT_EQ(matching.unpaired_left, std::vector<int>{1});
-  EXPECT_TRUE(matching.unpaired_right.empty());
+  EXPECT_EQ(pairing.unpaired_left, std::vector<int>{1});
+  EXPECT_TRUE(pairing.unpaired_right.empty());
 }
 
-TEST(StereoMatcher, FindsExchangedSides) {
+TEST(PersonPairing, FindsExchangedSides) {
   const auto person = WalkingPerson({0, 0, 4}, 1);
   const BodyKeypoints left = Exact(person, false);
   for (const SideSwap swap : kSideSwaps) {
-    const auto fit = FitStereoPair({}, kTestCamera, left, SwapSides(Exact(person, true), swap));
+    const auto fit = FitPersonPair({}, kTestCamera, left, SwapSides(Exact(person, true), swap));
     ASSERT_TRUE(fit);
     EXPECT_EQ(fit->right_swap, swap);
     EXPECT_LT(fit->cost, 1);
   }
 }
 
-TEST(StereoMatcher, RefusesWhatCannotBeOnePerson) {
+TEST(PersonPairing, RefusesWhatCannotBeOnePerson) {
   const auto left = Exact(WalkingPerson({0, 0, 5}, 0), false);
   // To the right of where it is in the left image: behind the camera.
-  EXPECT_FALSE(FitStereoPair({}, kTestCamera, left, Exact(WalkingPerson({0.5, 0, 5}, 0), true)));
+  EXPECT_FALSE(FitPersonPair({}, kTestCamera, left, Exact(WalkingPerson({0.5, 0, 5}, 0), true)));
   // Disparity of 2 m but the size of 5 m.
   BodyKeypoints shifted = left;
   for (BodyKeypoint& joint : shifted) joint.u_px -= 770 * 0.25 / 2;
-  const auto fit = FitStereoPair({}, kTestCamera, left, shifted);
-  EXPECT_TRUE(!fit || fit->cost > StereoMatcherOptions().gate);
+  const auto fit = FitPersonPair({}, kTestCamera, left, shifted);
+  EXPECT_TRUE(!fit || fit->cost > PersonPairingOptions().max_mean_squared_sigmas);
   // Another row.
   BodyKeypoints lower = Exact(WalkingPerson({0, 0, 5}, 0), true);
   for (BodyKeypoint& joint : lower) joint.v_px += 15;
-  EXPECT_GT(FitStereoPair({}, kTestCamera, left, lower)->cost, StereoMatcherOptions().gate);
+  EXPECT_GT(FitPersonPair({}, kTestCamera, left, lower)->cost,
+            PersonPairingOptions().max_mean_squared_sigmas);
 }
 
 TEST(Triangulator, ExactWithoutNoise) {
@@ -92,9 +93,9 @@ TEST(Triangulator, CovarianceMatchesTheScatter) {
   int num = 0;
   const double sigma_px = KeypointNoise().Sigma(0.9, 770 * kPersonHeightM / 5);
   for (int trial = 0; trial < 300; ++trial) {
-    const JointObservations joints = TriangulatePerson(
-        {}, kTestCamera, {}, Detect(kTestCamera, person, false, sigma_px, &random),
-        Detect(kTestCamera, person, true, sigma_px, &random), 38.5);
+    const BodyKeypoints left = Detect(kTestCamera, person, false, sigma_px, &random);
+    const BodyKeypoints right = Detect(kTestCamera, person, true, sigma_px, &random);
+    const JointObservations joints = TriangulatePerson({}, kTestCamera, {}, left, right, 38.5);
     for (std::size_t joint = 0; joint < person.size(); ++joint) {
       if (!joints[joint]) continue;
       const Eigen::Vector3d error = joints[joint]->p_C - person[joint];

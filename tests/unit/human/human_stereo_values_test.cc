@@ -9,7 +9,7 @@
 #include "common/human/disparity_refiner.h"
 #include "common/human/joint_triangulator.h"
 #include "common/human/layouts.h"
-#include "common/human/stereo_matcher.h"
+#include "common/human/person_pairing.h"
 
 // Costs, gates and covariances of people in two images, worked by hand: just below and just above.
 
@@ -184,8 +184,8 @@ TEST(TriangulatorValues, ALimbIsBelievableWithinItsNoise) {
   EXPECT_EQ(NumRemoved(0.35 * 0.25 - margin_m - 0.001), 1);
 }
 
-StereoMatcherOptions Matching() {
-  StereoMatcherOptions options;
+PersonPairingOptions Matching() {
+  PersonPairingOptions options;
   options.noise = TwoPixels();
   return options;
 }
@@ -201,12 +201,12 @@ Pair Joints(std::initializer_list<int> joints) {
   return pair;
 }
 
-double CostOf(const Pair& pair, StereoMatcherOptions options = Matching()) {
-  const auto fit = FitStereoPair(options, kCamera, pair.left, pair.right);
+double CostOf(const Pair& pair, PersonPairingOptions options = Matching()) {
+  const auto fit = FitPersonPair(options, kCamera, pair.left, pair.right);
   return fit ? fit->cost : -1;
 }
 
-TEST(MatcherValues, TheCostOfRowsAndDisparities) {
+TEST(PersonPairingValues, TheCostOfRowsAndDisparities) {
   // No segment has both ends among these: the size says nothing.
   const std::initializer_list<int> some = {kNose, kRightElbow, kLeftElbow, kRightKnee, kLeftAnkle};
   Pair pair = Joints(some);
@@ -226,21 +226,21 @@ TEST(MatcherValues, TheCostOfRowsAndDisparities) {
   EXPECT_EQ(CostOf(pair), -1);
 }
 
-TEST(MatcherValues, TheCostOfExchangedSides) {
+TEST(PersonPairingValues, TheCostOfExchangedSides) {
   const Pair pair = Joints({kNose, kRightElbow, kLeftElbow, kRightWrist, kLeftWrist, kNeck});
   const auto cost = [&pair](SideSwap swap) {
-    return FitStereoPair(Matching(), kCamera, pair.left, SwapSides(pair.right, swap));
+    return FitPersonPair(Matching(), kCamera, pair.left, SwapSides(pair.right, swap));
   };
   EXPECT_EQ(cost(SideSwap::kLowerArms)->right_swap, SideSwap::kLowerArms);
   EXPECT_NEAR(cost(SideSwap::kLowerArms)->cost - cost(SideSwap::kNone)->cost, 0.15, 1e-9);
   const Pair shoulders = Joints({kNose, kRightShoulder, kLeftShoulder, kRightAnkle, kLeftAnkle});
-  const auto all = FitStereoPair(Matching(), kCamera, shoulders.left,
+  const auto all = FitPersonPair(Matching(), kCamera, shoulders.left,
                                  SwapSides(shoulders.right, SideSwap::kAll));
   EXPECT_EQ(all->right_swap, SideSwap::kAll);
   EXPECT_NEAR(all->cost, 0.3, 1e-9);
 }
 
-TEST(MatcherValues, TheCostOfAnotherSize) {
+TEST(PersonPairingValues, TheCostOfAnotherSize) {
   // At 5 m a metre is 154 px. The longest of three ratios counts: half as long again.
   Pair pair;
   const auto put = [&pair](int joint, double x_m, double y_m) {

@@ -46,10 +46,10 @@ Appearance Clothes(float share) {
 
 HumanTrackOptions Options() {
   HumanTrackOptions options;
-  options.motion_sigma = 0.125;
-  options.motion_sigma_growth = 0.0625;
-  options.max_motion = 0.5;
-  options.max_motion_growth = 0.25;
+  options.motion_sigma_per_height = 0.125;
+  options.motion_sigma_growth_per_height = 0.0625;
+  options.max_motion_per_height = 0.5;
+  options.max_motion_growth_per_height = 0.25;
   options.disparity_sigma_px = 1;
   options.depth_sigma = 0.1;
   options.depth_sigma_growth = 0.05;

@@ -30,8 +30,8 @@ Se3 CameraPose() {
   return T_W_C;
 }
 
-PersonMeasurement Measure(const Body& body_W, const Se3& T_W_C, double sigma_m, int id = 1) {
-  PersonMeasurement person;
+HumanMeasurement Measure(const Body& body_W, const Se3& T_W_C, double sigma_m, int id = 1) {
+  HumanMeasurement person;
   person.id = HumanId{id};
   for (std::size_t i = 0; i < body_W.size(); ++i) {
     person.joints.push_back({kBodyJoints[i], T_W_C.inverse() * body_W[i],
@@ -59,7 +59,7 @@ struct Walk {
     step << 0.05 * k, 0, 0.1 * k, 0, 0.03 * k, 0;
     return Boxplus(CameraPose(), step);
   }
-  PersonMeasurement See(int k) const { return Measure(At(k), Camera(k), sigma_m); }
+  HumanMeasurement See(int k) const { return Measure(At(k), Camera(k), sigma_m); }
   /// Frames 0 .. count - 1, each predicted and taken in.
   void Run(int count, PeopleFilter* filter) const {
     for (int k = 0; k < count; ++k) {
@@ -90,7 +90,7 @@ TEST(PeopleFilter, AConstantVelocityIsPredicted) {
 TEST(PeopleFilter, LimbsSwingAndAreNotUsed) {
   Walk walk;
   PeopleFilter filter{PeopleFilterOptions()};
-  PersonMeasurement person = walk.See(0);
+  HumanMeasurement person = walk.See(0);
   person.joints.push_back({kRightWrist, {0, 0, 4}, 1e-4 * Eigen::Matrix3d::Identity()});
   person.joints.push_back({99, {0, 0, 4}, 1e-4 * Eigen::Matrix3d::Identity()});
   for (int k = 0; k < 2; ++k) filter.Update({person}, walk.Camera(0), kExactPose);
@@ -169,9 +169,9 @@ TEST(PeopleFilter, AJointThatIsElsewhereIsLeftOut) {
   PeopleFilter without{PeopleFilterOptions()};
   walk.Run(5, &filter);
   walk.Run(5, &without);
-  PersonMeasurement wrong = walk.See(5);
+  HumanMeasurement wrong = walk.See(5);
   wrong.joints[2].p_C.z() += 1.5;
-  PersonMeasurement missing = walk.See(5);
+  HumanMeasurement missing = walk.See(5);
   missing.joints.erase(missing.joints.begin() + 2);
   filter.Predict(kStep_s);
   without.Predict(kStep_s);
@@ -223,7 +223,7 @@ TEST(PeopleFilter, NobodyHasASayBeforeItIsKnown) {
     filter.Update({walk.See(k)}, walk.Camera(k), kExactPose);
   }
   EXPECT_TRUE(filter.Constrain({}, walk.Camera(4), kExactPose).empty());
-  PersonMeasurement stranger = walk.See(4);
+  HumanMeasurement stranger = walk.See(4);
   stranger.id = HumanId{77};
   EXPECT_TRUE(filter.Constrain({stranger}, walk.Camera(4), kExactPose).empty());
 }
@@ -241,7 +241,7 @@ TEST(PeopleFilter, ACorrectionOfTheWorldMovesEverything) {
     old_world.Predict(kStep_s);
     new_world.Predict(kStep_s);
     // Noise, so that there is something to correct.
-    PersonMeasurement person = walk.See(k);
+    HumanMeasurement person = walk.See(k);
     for (std::size_t i = 0; i < person.joints.size(); ++i)
       person.joints[i].p_C.x() += 0.02 * std::sin(static_cast<double>(3 * i) + k);
     const auto a = old_world.Constrain({person}, walk.Camera(k), pose_covariance);
@@ -321,10 +321,10 @@ class RandomPerson {
     for (Eigen::Vector3d& joint : body_W_) joint += step_s * v_W_ + wobble_m * Normal3();
   }
   /// With the covariance of stereo: far less certain in depth.
-  PersonMeasurement See(const Se3& T_W_C) {
+  HumanMeasurement See(const Se3& T_W_C) {
     const Eigen::Vector3d sigma_m(0.01, 0.015, 0.08);
-    PersonMeasurement person = Measure(body_W_, T_W_C, 1);
-    for (PersonMeasurement::Joint& joint : person.joints) {
+    HumanMeasurement person = Measure(body_W_, T_W_C, 1);
+    for (HumanMeasurement::Joint& joint : person.joints) {
       joint.p_C += sigma_m.cwiseProduct(Normal3());
       joint.covariance_C = sigma_m.cwiseAbs2().asDiagonal();
     }
@@ -352,9 +352,8 @@ double MeanNis(const PeopleFilterOptions& options) {
       const double step_s = k % 5 == 0 ? 0.2 : 0.1;
       person.Step(step_s);
       filter.Predict(step_s);
-      const PersonMeasurement seen = person.See(CameraPose());
-      for (const PersonConstraint& constraint :
-           filter.Constrain({seen}, CameraPose(), kExactPose)) {
+      const HumanMeasurement seen = person.See(CameraPose());
+      for (const HumanConstraint& constraint : filter.Constrain({seen}, CameraPose(), kExactPose)) {
         const auto n = static_cast<Eigen::Index>(constraint.p_W.size());
         Eigen::VectorXd r(3 * n);
         for (Eigen::Index i = 0; i < n; ++i) {

@@ -29,7 +29,7 @@ Matrix6d PoseCovariance() {
   return scale.asDiagonal() * A * A.transpose() * scale.asDiagonal();
 }
 
-PersonMeasurement See(const Eigen::Vector3d& neck_C, std::int64_t id = 7) {
+HumanMeasurement See(const Eigen::Vector3d& neck_C, std::int64_t id = 7) {
   return {HumanId{id}, {{kNeck, neck_C, Measured()}}};
 }
 
@@ -59,7 +59,7 @@ PeopleFilterOptions Options() {
   return options;
 }
 
-PersonConstraint Only(const std::vector<PersonConstraint>& constraints) {
+HumanConstraint Only(const std::vector<HumanConstraint>& constraints) {
   EXPECT_EQ(constraints.size(), 1U);
   return constraints.at(0);
 }
@@ -67,7 +67,7 @@ PersonConstraint Only(const std::vector<PersonConstraint>& constraints) {
 TEST(PeopleFilterValues, AJointIsAsUncertainAsMeasurementAndCamera) {
   PeopleFilter filter(Options());
   filter.Update({See(kNeckC)}, Camera(), PoseCovariance());
-  const PersonConstraint said = Only(filter.Constrain({See(kNeckC)}, Camera(), PoseCovariance()));
+  const HumanConstraint said = Only(filter.Constrain({See(kNeckC)}, Camera(), PoseCovariance()));
   EXPECT_EQ(said.id.value, 7);
   EXPECT_LT((said.p_W[0] - Camera() * kNeckC).norm(), 1e-12);
   EXPECT_EQ(said.p_C[0], kNeckC);
@@ -81,7 +81,7 @@ TEST(PeopleFilterValues, WithTimeVelocityAccelerationAndWobbleComeIn) {
   PeopleFilter filter(Options());
   filter.Update({See(kNeckC)}, Camera(), PoseCovariance());
   filter.Predict(0.25);
-  const PersonConstraint said = Only(filter.Constrain({See(kNeckC)}, Camera(), PoseCovariance()));
+  const HumanConstraint said = Only(filter.Constrain({See(kNeckC)}, Camera(), PoseCovariance()));
   const double motion_m2 = 0.0625 * (2.25 + 0.75 * 0.75) + 0.0025 * 2.5;
   const Eigen::Matrix3d expected =
       2 * MeasuredW() + OfCamera(kNeckC) + motion_m2 * Eigen::Matrix3d::Identity();
@@ -93,10 +93,10 @@ TEST(PeopleFilterValues, AJointThatIsSeenLaterOwesTheOthersNothing) {
   filter.Update({See(kNeckC)}, Camera(), PoseCovariance());
   filter.Predict(0.25);
   const Eigen::Vector3d nose_C(0.6, -0.7, 4.1);
-  PersonMeasurement both = See(kNeckC);
+  HumanMeasurement both = See(kNeckC);
   both.joints.push_back({kNose, nose_C, Measured()});
   filter.Update({both}, Camera(), PoseCovariance());
-  const PersonMeasurement nose{HumanId{7}, {{kNose, nose_C, Measured()}}};
+  const HumanMeasurement nose{HumanId{7}, {{kNose, nose_C, Measured()}}};
   const auto covariance = [&](double step_s) {
     PeopleFilter later = filter;
     later.Predict(step_s);
@@ -120,7 +120,7 @@ TEST(PeopleFilterValues, ASecondLookCorrectsByItsWeight) {
   filter.Update({See(kNeckC)}, Camera(), PoseCovariance());
   const Eigen::Vector3d moved_C = kNeckC + Eigen::Vector3d(0.01, 0.02, -0.05);
   filter.Update({See(moved_C)}, Camera(), PoseCovariance());
-  const PersonConstraint said = Only(filter.Constrain({See(kNeckC)}, Camera(), PoseCovariance()));
+  const HumanConstraint said = Only(filter.Constrain({See(kNeckC)}, Camera(), PoseCovariance()));
   const Eigen::Matrix3d P = MeasuredW() + OfCamera(kNeckC);
   const Eigen::Matrix3d gain = P * (P + MeasuredW() + OfCamera(moved_C)).inverse();
   const Eigen::Vector3d step_W = Camera() * moved_C - Camera() * kNeckC;
@@ -155,7 +155,7 @@ TEST(PeopleFilterValues, WhoIsNotWhereHeCanBeBeginsAnew) {
   filter.Update({See(kNeckC)}, Camera(), PoseCovariance());
   const Eigen::Vector3d elsewhere_C = kNeckC + Eigen::Vector3d(2, 0, 0);
   filter.Update({See(elsewhere_C)}, Camera(), PoseCovariance());
-  const PersonConstraint said =
+  const HumanConstraint said =
       Only(filter.Constrain({See(elsewhere_C)}, Camera(), PoseCovariance()));
   EXPECT_LT((said.p_W[0] - Camera() * elsewhere_C).norm(), 1e-12);
   EXPECT_LT((said.covariance_W - 2 * MeasuredW() - OfCamera(elsewhere_C)).norm(), 1e-9);
@@ -189,8 +189,8 @@ TEST(PeopleFilterValues, EveryoneMovesAlongWithTheWorld) {
   filter.Predict(0.25);
   moved.Predict(0.25);
   const Eigen::Vector3d next_C = kNeckC + Eigen::Vector3d(0.2, 0, 0.04);
-  const PersonConstraint before = Only(filter.Constrain({See(next_C)}, Camera(), PoseCovariance()));
-  const PersonConstraint after =
+  const HumanConstraint before = Only(filter.Constrain({See(next_C)}, Camera(), PoseCovariance()));
+  const HumanConstraint after =
       Only(moved.Constrain({See(next_C)}, T_new_old * Camera(), PoseCovariance()));
   EXPECT_LT((after.p_W[0] - T_new_old * before.p_W[0]).norm(), 1e-9);
   const Eigen::Matrix3d R = T_new_old.rotation.toRotationMatrix();

@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -76,7 +78,7 @@ TEST_F(MapExportBooksTest, EachPoseStandsInItsFile) {
   map.ground_truth_axes = 1;
   Export(map);
   EXPECT_EQ(Text("trajectory.tum"),
-            "# left out: 2 poses whose time is not later than that of an image before them\n" +
+            "# left out: 2 poses whose time is not later than that of an earlier image\n" +
                 Row("1.000001", "1.000", "1.250", "-1.000") +
                 Row("2.000002", "3.000", "3.250", "-3.000") +
                 Row("3.000003", "4.000", "4.250", "-4.000"));
@@ -157,10 +159,24 @@ TEST_F(MapExportBooksTest, ATorsoLooksAcrossItsHips) {
 
 TEST_F(MapExportBooksTest, JointsAndMeasuredJointsKeepTheirPlaces) {
   EXPECT_EQ(HumanToJson({17}, {3}, Person({2, 5})),
-            "{\"seq\": 17, \"utime\": 1500000, \"track\": 3, \"joints\": {\"2\": [2.0000, 4.0000, "
-            "6.0000], \"5\": [5.0000, 10.0000, 15.0000]}, \"measured\": {\"2\": [102.0000, "
-            "202.0000, 302.0000], \"5\": [105.0000, 205.0000, 305.0000]}, \"segment_lengths_m\": "
-            "{}}");
+            R"({"seq":17,"utime":1500000,"track":3,"joints":{"2":[2.0,4.0,6.0],)"
+            R"("5":[5.0,10.0,15.0]},"measured":{"2":[102.0,202.0,302.0],)"
+            R"("5":[105.0,205.0,305.0]},"segment_lengths_m":{}})");
+}
+
+// The map's floats, to the bit, and no digit more than that takes.
+TEST_F(MapExportBooksTest, NumbersOfPeopleAreThoseOfTheMap) {
+  MapHuman human;
+  human.utime = (std::int64_t{1} << 53) + 1;  // no double
+  human.joints[kNeck].p_W = {1.0F / 3, -123.4567F, 1e-7F};
+  human.segment_lengths_m[2] = 0.1F;
+  const std::string line = HumanToJson({17}, {3}, human);
+  const nlohmann::json json = nlohmann::json::parse(line);
+  EXPECT_EQ(json["utime"].get<std::int64_t>(), human.utime);
+  const auto p_W = json["joints"]["1"].get<std::vector<float>>();
+  EXPECT_EQ(Eigen::Vector3f(p_W.at(0), p_W.at(1), p_W.at(2)), human.joints[kNeck].p_W) << line;
+  EXPECT_NE(line.find("[0.33333334,-123.4567,1e-07]"), std::string::npos) << line;
+  EXPECT_NE(line.find("{\"2\":0.1}"), std::string::npos) << line;
 }
 
 // What an earlier export left goes, what others have there stays.

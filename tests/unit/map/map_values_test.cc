@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -336,7 +337,7 @@ TEST_F(MapFileValuesTest, NothingBehindAChunkWithoutSenseCounts) {
   const FourDMap map = Read();
   EXPECT_FALSE(map.is_closed);
   EXPECT_TRUE(map.frames.empty());
-  EXPECT_EQ(summary_.drop_reason, "2 chunks from the first on that makes no sense");
+  EXPECT_EQ(summary_.drop_reason, "2 chunks, starting at the first invalid one");
 }
 
 TEST_F(MapFileValuesTest, EveryFlippedBitOfAChunkIsNoticed) {

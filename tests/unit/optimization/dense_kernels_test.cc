@@ -67,5 +67,39 @@ TEST(DenseKernelsTest, WhatIsNotPositiveDefiniteIsRefused) {
   EXPECT_FALSE(FactorisePanel(panel.data(), 2, 2, 2));
 }
 
+TEST(DenseKernelsTest, AShareOfTheHessianIsAddedForEachSizeThereIs) {
+  std::mt19937_64 random(7);
+  for (int rows = 1; rows <= 6; ++rows) {
+    for (const int a : {1, 3, 6}) {
+      for (const int b : {1, 3, 6}) {
+        const std::vector<double> A = RandomDoubles(static_cast<std::size_t>(rows * 7), &random);
+        const std::vector<double> B = RandomDoubles(static_cast<std::size_t>(rows * 8), &random);
+        std::vector<double> C = RandomDoubles(static_cast<std::size_t>(a * b + 1), &random);
+        std::vector<double> expected = C;  // what follows C stays
+        for (int i = 0; i < a; ++i) {
+          for (int j = 0; j < b; ++j) {
+            double& sum = expected[static_cast<std::size_t>(i * b + j)];
+            for (int k = 0; k < rows; ++k) {
+              sum +=
+                  A[static_cast<std::size_t>(k * 7 + i)] * B[static_cast<std::size_t>(k * 8 + j)];
+            }
+          }
+        }
+        FindAddProduct(rows, a, b)(A.data(), 7, B.data(), 8, C.data());
+        EXPECT_EQ(C, expected) << rows << " rows, " << a << " x " << b;
+      }
+    }
+  }
+}
+
+TEST(DenseKernelsDeathTest, OtherSizesAreRefused) {
+  for (const int size : {0, 2, 4, 5, 7}) {
+    EXPECT_DEATH(FindAddProduct(3, size, 3), "check failed: size == 1") << size;
+    EXPECT_DEATH(FindAddProduct(3, 6, size), "check failed: size == 1") << size;
+  }
+  EXPECT_DEATH(FindAddProduct(0, 3, 3), "check failed");
+  EXPECT_DEATH(FindAddProduct(7, 3, 3), "check failed");
+}
+
 }  // namespace
 }  // namespace airdos

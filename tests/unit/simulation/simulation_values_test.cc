@@ -195,6 +195,30 @@ TEST(SimulationValuesTest, PeopleAndBoxesStandOnTheGround) {
   }
 }
 
+// The order of draws is the code's and not the compiler's: one sequence for a seed, wherever it is
+// made.
+TEST(SimulationValuesTest, ALandmarkIsDrawnByDepthRowAndColumn) {
+  const SimulationOptions options = Options();
+  Random random(options.seed);
+  for (int i = 0; i < 5; ++i) random.Uniform(0, 1);  // the camera's path
+  const double z = random.Uniform(options.nearest_m, options.farthest_m);
+  const double v_px = random.Uniform(-0.2, 1.2) * 360;
+  const double u_px = random.Uniform(-0.2, 1.2) * 640;
+  const Eigen::Vector3d expected((u_px - 310) / 400 * z, (v_px - 170) / 420 * z, z);
+  EXPECT_LT((Simulate(options).landmarks_W.at(0) - expected).norm(), 1e-9);
+}
+
+TEST(SimulationValuesTest, ABoxIsDrawnByLengthHeightAndWidth) {
+  Random random(7), same(7);
+  const auto points_W = MakeBox({RootState()}, 3, &random).points_W.at(0);
+  const double length_m = same.Uniform(0.5, 0.9);  // z; each point lies on the next pair of sides
+  const double height_m = same.Uniform(0.5, 0.9);
+  const double width_m = same.Uniform(0.5, 1.25);
+  EXPECT_NEAR(std::abs(points_W[0].x()), width_m, 1e-12);
+  EXPECT_NEAR(std::abs(points_W[1].y()), height_m, 1e-12);
+  EXPECT_NEAR(std::abs(points_W[2].z()), length_m, 1e-12);
+}
+
 RootMotion Walking() {
   RootMotion motion;
   motion.velocity_W_m_s = {0.8, 0, -0.6};  // heading atan2(0.6, 0.8)

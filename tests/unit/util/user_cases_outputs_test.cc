@@ -17,12 +17,13 @@
 #include "common/map/four_d_map.h"
 #include "common/map/map_export.h"
 #include "common/map/map_file.h"
-#include "common/util/error.h"
 #include "common/util/input_file.h"
 #include "common/util/output_files.h"
 #include "common/util/output_folder.h"
 #include "common/util/suggestion.h"
 #include "common/util/text_file.h"
+#include "tests/support/folder_test.h"
+#include "tests/support/input_errors.h"
 
 // What is written, what is not, and what is said of it.
 
@@ -31,47 +32,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The text of the InputError that it throws; empty if it throws none.
-std::string MessageOf(const std::function<void()>& what) {
-  try {
-    what();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool Has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 bool SelectAll(const std::string&, const std::string&) { return true; }
 
-class UserCases : public ::testing::Test {
+class UserCases : public FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("airdos_user_cases_outputs_" + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  UserCases() : FolderTest("user_cases_outputs") {}
 
-  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
-  std::string Write(const std::string& name, const std::string& text) const {
-    fs::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name) << text;
-    return Path(name);
-  }
-  std::string TextOf(const std::string& name) const {
-    std::ifstream file(folder_ / name);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
   /// Whether the file system remembers who wrote a file.
   bool KnowsMarks() const {
     const std::string probe = Write("probe", "");
     return setxattr(probe.c_str(), "user.airdos.probe", "1", 1, 0) == 0;
   }
-  fs::path folder_;
 };
 
 TEST_F(UserCases, CaseC01AnInputIsNeverWrittenOver) {
@@ -84,13 +55,13 @@ TEST_F(UserCases, CaseC01AnInputIsNeverWrittenOver) {
   for (const std::string& path : same) {
     for (const std::string& named : {input, Path("soft.lcm")}) {
       for (const bool force : {false, true}) {
-        const std::string message = MessageOf([&] { CheckOutputFile(path, {{named}, force}); });
-        EXPECT_TRUE(Has(message, "is an input")) << path << ": " << message;
+        const std::string message = ErrorOf([&] { CheckOutputFile(path, {{named}, force}); });
+        EXPECT_TRUE(Holds(message, "is an input")) << path << ": " << message;
       }
     }
   }
   MarkWritten(input);  // even a file of our own
-  EXPECT_TRUE(Has(MessageOf([&] { CheckOutputFile(input, {{input}, false}); }), "is an input"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { CheckOutputFile(input, {{input}, false}); }), "is an input"));
   EXPECT_EQ(TextOf("in.lcm"), "events");
 }
 
@@ -104,27 +75,27 @@ TEST_F(UserCases, CaseC01NothingIsWrittenIntoAnInputFolder) {
   for (const char* name :
        {"data/new.json", "data/image_0/000000.png", "data/image_0/new.png", "door/new.json",
         "data/new/new/new.json", "hard.png", "elsewhere/000001.png"}) {
-    EXPECT_TRUE(Has(MessageOf([&] { CheckOutputFile(Path(name), rules); }), "input folder"))
+    EXPECT_TRUE(Holds(ErrorOf([&] { CheckOutputFile(Path(name), rules); }), "input folder"))
         << name;
   }
-  EXPECT_EQ(MessageOf([&] { CheckOutputFile(Path("new.json"), rules); }), "");
-  EXPECT_TRUE(Has(MessageOf([&] { OutputFolder(Path("data/run"), rules); }), "input folder"));
-  EXPECT_TRUE(Has(MessageOf([&] { OutputFolder(Path("data"), rules); }), "is an input"));
+  EXPECT_EQ(ErrorOf([&] { CheckOutputFile(Path("new.json"), rules); }), "");
+  EXPECT_TRUE(Holds(ErrorOf([&] { OutputFolder(Path("data/run"), rules); }), "input folder"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { OutputFolder(Path("data"), rules); }), "is an input"));
   EXPECT_FALSE(fs::exists(Path("data/run")));
 }
 
 TEST_F(UserCases, CaseC01AFileOfSomebodyElseNeedsForce) {
   const std::string path = Write("thesis.json", "mine");
-  EXPECT_EQ(MessageOf([&] { CheckOutputFile(path, {}); }),
+  EXPECT_EQ(ErrorOf([&] { CheckOutputFile(path, {}); }),
             path +
                 ": exists and was not written by airdos, or changed since, or cut short; "
                 "--force replaces it");
-  EXPECT_EQ(MessageOf([&] { CheckOutputFile(path, {{}, true}); }), "");
-  EXPECT_EQ(MessageOf([&] { CheckOutputFile("/dev/null", {}); }), "");
-  EXPECT_EQ(MessageOf([&] { CheckOutputFile("/dev/stdout", {}); }), "");
-  EXPECT_TRUE(Has(MessageOf([&] { CheckOutputFile(Path("none/x"), {}); }), "there is no folder"));
-  EXPECT_TRUE(Has(MessageOf([&] { CheckOutputFile(Path("thesis.json/x"), {}); }), "written"));
-  EXPECT_TRUE(Has(MessageOf([&] { CheckOutputFile(folder_.string(), {}); }), "is a folder"));
+  EXPECT_EQ(ErrorOf([&] { CheckOutputFile(path, {{}, true}); }), "");
+  EXPECT_EQ(ErrorOf([&] { CheckOutputFile("/dev/null", {}); }), "");
+  EXPECT_EQ(ErrorOf([&] { CheckOutputFile("/dev/stdout", {}); }), "");
+  EXPECT_TRUE(Holds(ErrorOf([&] { CheckOutputFile(Path("none/x"), {}); }), "there is no folder"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { CheckOutputFile(Path("thesis.json/x"), {}); }), "written"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { CheckOutputFile(folder_.string(), {}); }), "is a folder"));
 }
 
 TEST_F(UserCases, CaseC01AFileThatTheSameProgramWroteIsReplacedUntilItIsChanged) {
@@ -134,12 +105,12 @@ TEST_F(UserCases, CaseC01AFileThatTheSameProgramWroteIsReplacedUntilItIsChanged)
     const OutputFiles outputs({path, ""}, {});
     Write("a.json", "run " + std::to_string(run));
   }
-  EXPECT_EQ(MessageOf([&] { CheckOutputFile(path, {}); }), "");
+  EXPECT_EQ(ErrorOf([&] { CheckOutputFile(path, {}); }), "");
   Write("a.json", "run 1, and my remarks");
-  EXPECT_TRUE(Has(MessageOf([&] { CheckOutputFile(path, {}); }), "--force"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { CheckOutputFile(path, {}); }), "--force"));
   const std::string other = "21 " + std::to_string(StampOf(path)->mtime_ns) + " airdos-other";
   setxattr(path.c_str(), "user.airdos.written", other.data(), other.size(), 0);
-  EXPECT_TRUE(Has(MessageOf([&] { CheckOutputFile(path, {}); }), "was written by airdos-other"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { CheckOutputFile(path, {}); }), "was written by airdos-other"));
 }
 
 TEST_F(UserCases, CaseC01AFileThatWasNotWrittenAfterAllIsNotMarked) {
@@ -150,8 +121,8 @@ TEST_F(UserCases, CaseC01AFileThatWasNotWrittenAfterAllIsNotMarked) {
 
 TEST_F(UserCases, CaseC01TwoOutputsOfOneNameAreRefused) {
   fs::create_directory_symlink(folder_, Path("door"));
-  EXPECT_TRUE(Has(MessageOf([&] { OutputFiles({Path("a"), Path("door/a")}, {}); }), "twice"));
-  EXPECT_EQ(MessageOf([&] { OutputFiles({"/dev/null", "/dev/null"}, {}); }), "");
+  EXPECT_TRUE(Holds(ErrorOf([&] { OutputFiles({Path("a"), Path("door/a")}, {}); }), "twice"));
+  EXPECT_EQ(ErrorOf([&] { OutputFiles({"/dev/null", "/dev/null"}, {}); }), "");
 }
 
 void WriteMap(const std::string& path, int num_frames, bool has_truth) {
@@ -200,7 +171,7 @@ TEST_F(ExportCases, CaseC03AFileOfTheUserInTheWayIsNotReplacedWithoutForce) {
   WriteMap(Path("map.airdos"), 2, true);
   for (const char* name : {"trajectory.tum", "ground_truth.tum", "people/77.tum"}) {
     Write(std::string("out/") + name, "mine");
-    EXPECT_TRUE(Has(MessageOf([&] { Export("map.airdos", "out"); }), name));
+    EXPECT_TRUE(Holds(ErrorOf([&] { Export("map.airdos", "out"); }), name));
     EXPECT_EQ(TextOf(std::string("out/") + name), "mine");
     EXPECT_EQ(std::distance(fs::recursive_directory_iterator(Path("out")), {}),
               std::string(name).find('/') == std::string::npos ? 1 : 2)
@@ -209,14 +180,14 @@ TEST_F(ExportCases, CaseC03AFileOfTheUserInTheWayIsNotReplacedWithoutForce) {
   }
   Write("out/trajectory.tum", "mine");
   Export("map.airdos", "out", true);
-  EXPECT_TRUE(Has(TextOf("out/trajectory.tum"), "0.100000 "));
+  EXPECT_TRUE(Holds(TextOf("out/trajectory.tum"), "0.100000 "));
 }
 
 TEST_F(ExportCases, CaseC03AnExportThatWasChangedIsTheUsers) {
   WriteMap(Path("map.airdos"), 2, true);
   Export("map.airdos", "out");
   Write("out/people.jsonl", "edited");
-  EXPECT_TRUE(Has(MessageOf([&] { Export("map.airdos", "out"); }), "changed since"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { Export("map.airdos", "out"); }), "changed since"));
   EXPECT_EQ(TextOf("out/people.jsonl"), "edited");
 }
 
@@ -259,20 +230,20 @@ TEST_F(UserCases, CaseC11AnEarlierResultThatIsReadIsNotRemoved) {
     Write("run/output.lcm", "events");
   }
   OutputFolder next(Path("run"), {{Path("run/output.lcm")}, true});
-  EXPECT_TRUE(Has(MessageOf([&] { next.RequireReplaceable({}, SelectAll); }), "is an input"));
-  EXPECT_TRUE(Has(MessageOf([&] { next.RemoveEarlier(SelectAll); }), "is an input"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { next.RequireReplaceable({}, SelectAll); }), "is an input"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { next.RemoveEarlier(SelectAll); }), "is an input"));
   EXPECT_EQ(TextOf("run/output.lcm"), "events");
 }
 
 TEST_F(UserCases, CaseC09TheSecondRunIntoAFolderIsRefused) {
   auto first = std::make_unique<OutputFolder>(Path("run"), OutputRules());
   first->Claim("a", "run");
-  const std::string message = MessageOf([&] { OutputFolder(Path("run"), {{}, true}); });
-  EXPECT_TRUE(Has(message, "another run is writing here (process " + std::to_string(getpid())))
+  const std::string message = ErrorOf([&] { OutputFolder(Path("run"), {{}, true}); });
+  EXPECT_TRUE(Holds(message, "another run is writing here (process " + std::to_string(getpid())))
       << message;
   Write("run/a", "whole");
   first.reset();
-  EXPECT_EQ(MessageOf([&] { OutputFolder(Path("run"), {}); }), "");
+  EXPECT_EQ(ErrorOf([&] { OutputFolder(Path("run"), {}); }), "");
   EXPECT_EQ(TextOf("run/a"), "whole");
 }
 
@@ -283,7 +254,7 @@ TEST_F(UserCases, CaseC07AFolderInWhichNothingWasWrittenIsLeftAsItWas) {
   { OutputFolder unused(Path("old"), {}); }
   EXPECT_TRUE(fs::is_empty(Path("old")));
   Write("file", "");
-  EXPECT_TRUE(Has(MessageOf([&] { OutputFolder(Path("file"), {}); }), "cannot be made"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { OutputFolder(Path("file"), {}); }), "cannot be created"));
 }
 
 TEST_F(UserCases, CaseC06InputsOfAnotherKindAreOneLineAndNoWait) {
@@ -308,10 +279,10 @@ TEST_F(UserCases, CaseC06InputsOfAnotherKindAreOneLineAndNoWait) {
     const std::string reasons[] = {"is a pipe", "is a folder", "is a pipe, device",
                                    "cannot be read"};
     for (int i = 0; i < 4; ++i) {
-      const std::string message = MessageOf([&] { read(inputs[i]); });
+      const std::string message = ErrorOf([&] { read(inputs[i]); });
       EXPECT_EQ(message.rfind(inputs[i] + ": ", 0), 0u) << message;
-      EXPECT_TRUE(Has(message, reasons[i])) << message;
-      EXPECT_FALSE(Has(message, "\n"));
+      EXPECT_TRUE(Holds(message, reasons[i])) << message;
+      EXPECT_FALSE(Holds(message, "\n"));
     }
   }
 }
@@ -334,10 +305,10 @@ TEST(Suggestions, NameWhatAMistypedWordIsNearTo) {
 TEST(Suggestions, ComeWithKeysAndChoicesOfAConfiguration) {
   const std::string text = "tracking:\n  window: 3\n  mode: fast\n";
   ConfigReader config = ConfigReader::FromString(text, "x.yaml");
-  EXPECT_EQ(MessageOf([&] { config.Override("trackng.window=4"); }),
+  EXPECT_EQ(ErrorOf([&] { config.Override("trackng.window=4"); }),
             "x.yaml: key 'trackng.window' with value '4': there is no such key; did you mean "
             "'tracking.window'?");
-  EXPECT_EQ(MessageOf([&] {
+  EXPECT_EQ(ErrorOf([&] {
               config.ReadChoice("tracking.mode", {"slow", "fasts"});
             }),
             "x.yaml: key 'tracking.mode' with value 'fast': must be one of slow, fasts; did you "
@@ -345,7 +316,7 @@ TEST(Suggestions, ComeWithKeysAndChoicesOfAConfiguration) {
   ConfigReader typo = ConfigReader::FromString("a:\n  window: 3\n  windwo: 4\n", "y.yaml");
   int window = 0;
   typo.Read("a.window", &window, 0, 9);
-  EXPECT_TRUE(Has(MessageOf([&] { typo.Finish(); }), "did you mean 'a.window'?"));
+  EXPECT_TRUE(Holds(ErrorOf([&] { typo.Finish(); }), "did you mean 'a.window'?"));
 }
 
 TEST(Suggestions, ValuesThatAreNotPlainAreReadAgain) {

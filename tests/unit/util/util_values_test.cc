@@ -5,18 +5,22 @@
 #include <sys/xattr.h>
 #include <unistd.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "common/util/digest.h"
 #include "common/util/error.h"
+#include "common/util/format.h"
 #include "common/util/free_disk.h"
 #include "common/util/image_header.h"
 #include "common/util/json_file.h"
 #include "common/util/output_files.h"
 #include "common/util/output_folder.h"
+#include "common/util/quantile.h"
 #include "common/util/suggestion.h"
 #include "common/util/text_file.h"
+#include "tests/support/input_errors.h"
 #include "tests/support/scratch_folder.h"
 
 namespace airdos {
@@ -24,20 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
-
-template <class Act>
-std::string ErrorOf(Act act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool Holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 class UtilValuesTest : public ::testing::Test {
  protected:
@@ -152,7 +142,7 @@ TEST_F(UtilValuesTest, AFileDeepInAnInputIsFoundUnderAnotherName) {
   fs::create_hard_link(deep, folder_.PathOf("other"));
   EXPECT_TRUE(
       Holds(ErrorOf([&] { CheckNoInput(folder_.PathOf("other"), {folder_.PathOf("input")}); }),
-            "lies in the input folder"));
+            "is in the input folder"));
   EXPECT_NO_THROW(CheckNoInput(folder_.Write("free"), {folder_.PathOf("input")}));
 }
 
@@ -170,7 +160,8 @@ TEST_F(UtilValuesTest, AFolderOfResultsFromRunToRun) {
     folder.Claim("two", "h");
     folder_.Write("results/two", "22");
     for (const char* name : {"../x", "/x", "", "a/./b", "a\nb"}) {
-      EXPECT_TRUE(Holds(ErrorOf([&] { folder.Claim(name, "g"); }), "is no name for a result"))
+      EXPECT_TRUE(
+          Holds(ErrorOf([&] { folder.Claim(name, "g"); }), "is not a valid name for a result"))
           << name;
     }
     EXPECT_TRUE(
@@ -210,6 +201,43 @@ TEST(JsonValuesTest, WholeNumbersWithinBothLimits) {
 }
 
 // The example of FIPS 180-2.
+TEST(TextValuesTest, WhatIsShownOfAFileIsPrintableAndShort) {
+  EXPECT_EQ(Printable("a\x1b[31m\n\x7f z\xc3\xa4"), "a?[31m?? z\xc3\xa4");
+  EXPECT_EQ(Shown(std::string(60, 'x')), std::string(60, 'x'));
+  EXPECT_EQ(Shown(std::string(61, '\t')), std::string(60, '?') + "...");
+}
+
+TEST(FormatValuesTest, IsAsLongAsItsText) {
+  EXPECT_EQ(Format("%s", ""), "");
+  EXPECT_EQ(Format("%-6s|%6.2f %%|%+d", "ATE", 1.005, 7), "ATE   |  1.00 %|+7");
+  const std::string word(1000, 'x');  // no buffer of a fixed length cuts it
+  EXPECT_EQ(Format("%s%s.", word.c_str(), word.c_str()), word + word + ".");
+  EXPECT_EQ(Format("%.*f", 3, 2.0 / 3), "0.667");
+}
+
+TEST(QuantileValuesTest, IsOnALineBetweenItsNeighbours) {
+  EXPECT_EQ(Quantile({40, 10, 30, 20}, 0), 10);
+  EXPECT_EQ(Quantile({40, 10, 30, 20}, 0.25), 17.5);  // h = 0.75
+  EXPECT_EQ(Quantile({40, 10, 30, 20}, 0.5), 25);     // h = 1.5
+  EXPECT_EQ(Quantile({40, 10, 30, 20}, 0.75), 32.5);  // h = 2.25
+  EXPECT_EQ(Quantile({40, 10, 30, 20}, 1), 40);
+  EXPECT_EQ(Quantile({5, 1, 3}, 0.5), 3);  // on a value
+  EXPECT_EQ(Quantile({5, 1, 3}, 0.25), 2);
+  // h = 98.01: a hundredth of the way from the 99th to the 100th value.
+  std::vector<double> latencies(100, 4.0);
+  latencies[7] = 104;
+  EXPECT_NEAR(Quantile(latencies, 0.99), 5, 1e-12);
+}
+
+TEST(QuantileValuesTest, OfFewEqualAndInfiniteValues) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(Quantile({}, 0.5), 0);
+  EXPECT_EQ(Quantile({-7}, 0.9), -7);
+  EXPECT_EQ(Quantile({0.53, 0.53}, 0.05), 0.53);   // to the bit
+  EXPECT_EQ(Quantile({1, 2, kInfinity}, 0.5), 2);  // not 0 * infinity
+  EXPECT_EQ(Quantile({1, kInfinity, kInfinity, kInfinity}, 0.9), kInfinity);
+}
+
 TEST(DigestValuesTest, IsSha256) {
   Digest digest;
   digest.Add("a", 1);

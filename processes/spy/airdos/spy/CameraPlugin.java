@@ -4,28 +4,19 @@ import airdos.image_t;
 import java.awt.Dimension;
 import java.awt.Graphics;
 import java.awt.Graphics2D;
-import java.awt.Window;
-import java.awt.event.ActionEvent;
-import java.awt.event.WindowAdapter;
-import java.awt.event.WindowEvent;
-import java.beans.PropertyVetoException;
-import javax.swing.AbstractAction;
 import javax.swing.Action;
 import javax.swing.JDesktopPane;
 import javax.swing.JInternalFrame;
 import javax.swing.JPanel;
-import javax.swing.SwingUtilities;
 import javax.swing.Timer;
-import javax.swing.event.InternalFrameAdapter;
-import javax.swing.event.InternalFrameEvent;
 import lcm.lcm.LCM;
 import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
 /**
- * Opens for channels of images: CAMERA_LEFT with the keypoints, tracks and static features of the
- * same image drawn over it. The other channels come by a subscription of its own on the URL of
- * LCM_DEFAULT_URL (launch_scripts/spy.sh sets it), because the spy hands over one channel only.
+ * Opens for image channels; CAMERA_LEFT has the keypoints, tracks and static features of the
+ * same image drawn over it. The other channels are received by a separate subscription on
+ * LCM_DEFAULT_URL (set by launch_scripts/spy.sh), because the spy passes on one channel only.
  */
 public final class CameraPlugin implements SpyPlugin {
   static final String NAME = "Camera with people and features";
@@ -39,15 +30,10 @@ public final class CameraPlugin implements SpyPlugin {
     return fingerprint == image_t.LCM_FINGERPRINT;
   }
 
-  /** Called with nulls first, for the name only. */
+  /** First called with nulls, only for the name. */
   @Override
   public Action getAction(JDesktopPane desktop, ChannelData channel) {
-    return new AbstractAction(NAME) {
-      @Override
-      public void actionPerformed(ActionEvent event) {
-        if (desktop != null) open(desktop);
-      }
-    };
+    return PluginWindow.action(NAME, desktop, () -> open(desktop));
   }
 
   private static void open(JDesktopPane desktop) {
@@ -57,53 +43,14 @@ public final class CameraPlugin implements SpyPlugin {
 
     View view = new View();
     Timer timer = new Timer(REFRESH_MS, event -> view.show(history.newest()));
-    JInternalFrame window = newWindow(NAME, view, desktop, SIZE);
+    JInternalFrame window = PluginWindow.open(NAME, view, desktop, SIZE);
     Runnable stop =
         () -> {
           timer.stop();
           for (String channel : FrameHistory.CHANNELS) lcm.unsubscribe(channel, history);
         };
-    onClose(window, desktop, stop);
+    PluginWindow.onClose(window, desktop, stop);
     timer.start();
-  }
-
-  static JInternalFrame newWindow(
-      String title, JPanel content, JDesktopPane desktop, Dimension size) {
-    JInternalFrame window = new JInternalFrame(title, true, true, true, true);
-    window.setContentPane(content);
-    window.setSize(size);
-    desktop.add(window);
-    window.setVisible(true);
-    Window outer = SwingUtilities.getWindowAncestor(desktop);
-    if (outer == null) return window;
-    outer.setSize(size);
-    outer.validate();
-    try {
-      window.setMaximum(true);
-    } catch (PropertyVetoException e) {
-      // Then it stays as large as it is.
-    }
-    return window;
-  }
-
-  /** Runs `stop` when the plugin's window or the spy's window around it goes away. */
-  static void onClose(JInternalFrame window, JDesktopPane desktop, Runnable stop) {
-    window.addInternalFrameListener(
-        new InternalFrameAdapter() {
-          @Override
-          public void internalFrameClosed(InternalFrameEvent event) {
-            stop.run();
-          }
-        });
-    Window outer = SwingUtilities.getWindowAncestor(desktop);
-    if (outer == null) return;
-    outer.addWindowListener(
-        new WindowAdapter() {
-          @Override
-          public void windowClosing(WindowEvent event) {
-            window.dispose();
-          }
-        });
   }
 
   private static final class View extends JPanel {

@@ -7,7 +7,7 @@ import airdos.static_features_t;
 import java.util.ArrayList;
 import java.util.List;
 
-/** What was said of one image. Everything but the image may be null: it has not arrived. */
+/** All messages about one image. Everything but the image may be null if it has not arrived. */
 final class Frame {
   final image_t image;
   final person_keypoints_t keypoints;

@@ -11,8 +11,8 @@ import lcm.lcm.LCMDataInputStream;
 import lcm.lcm.LCMSubscriber;
 
 /**
- * Joins the left image with the keypoints, people and features of the same image number. Messages
- * come on LCM's thread, the frame is asked for on Swing's.
+ * Joins the left image with keypoints, people and features of the same image number. Messages
+ * arrive on LCM's thread; the frame is requested on Swing's.
  */
 final class FrameHistory implements LCMSubscriber {
   static final String IMAGE = "CAMERA_LEFT";
@@ -21,7 +21,7 @@ final class FrameHistory implements LCMSubscriber {
   static final String FEATURES = "STATIC_FEATURES";
   static final String[] CHANNELS = {IMAGE, KEYPOINTS, HUMANS, FEATURES};
 
-  /** How many images the view may lag behind the camera while it waits for a slow process. */
+  /** How many images the view may lag behind the camera while waiting for a slow process. */
   static final long MAX_LAG = 10;
 
   private final SeqBuffer<image_t> images = new SeqBuffer<>();
@@ -35,7 +35,8 @@ final class FrameHistory implements LCMSubscriber {
     try {
       add(channel, stream);
     } catch (IOException | RuntimeException e) {
-      // Whatever the bytes were (the generated decode() throws all kinds), the spy goes on.
+      // Whatever the bytes were (the generated decode() throws all kinds of exceptions), the spy
+      // continues.
       synchronized (this) {
         ++numUndecodable;
       }
@@ -82,8 +83,8 @@ final class FrameHistory implements LCMSubscriber {
   }
 
   /**
-   * The newest image for which every process that speaks in this session has spoken; an image of
-   * MAX_LAG before the newest, with what there is, if one of them has fallen silent. Null before
+   * The newest image for which every process active in this session has published. If one of them
+   * has fallen silent, the image MAX_LAG before the newest, with whatever there is. Null before
    * the first image.
    */
   synchronized Frame newest() {

@@ -19,7 +19,7 @@ import java.io.IOException;
 import java.util.Locale;
 import javax.imageio.ImageIO;
 
-/** Draws one frame: the image, over it features, detections and tracks, below it a line of text. */
+/** Draws one frame: the image with features, detections and tracks, and a line of text below. */
 final class FrameRenderer {
   static final int TEXT_HEIGHT = 44;
   static final Color STEREO_FEATURE = new Color(0x00, 0xE0, 0x4D);
@@ -32,14 +32,14 @@ final class FrameRenderer {
   private image_t decodedFrom;
   private BufferedImage decoded;
 
-  /** Neighbouring ids get colours far apart; green and yellow are left to the features. */
+  /** Gives neighbouring ids distinct colours; green and yellow are reserved for features. */
   static Color colourOf(long trackId) {
     double turn = (trackId * GOLDEN_RATIO) % 1.0;
     double hue = 0.50 + 0.59 * (turn < 0 ? turn + 1 : turn);  // cyan, blue, violet, red, orange
     return Color.getHSBColor((float) (hue % 1.0), 0.75f, 1.0f);
   }
 
-  /** Fills width x height; the image keeps its proportions. */
+  /** Fills width x height; the image keeps its aspect ratio. */
   void paint(Graphics2D g, Frame frame, int width, int height) {
     g.setColor(BACKGROUND);
     g.fillRect(0, 0, width, height);
@@ -76,7 +76,7 @@ final class FrameRenderer {
         (double) (height - TEXT_HEIGHT) / Math.max(1, image.height));
   }
 
-  /** Pixel centres have whole coordinates, so the image begins at -0.5. */
+  /** Pixel centres have integer coordinates, so the image starts at -0.5. */
   static double toScreen(float pixel, double scale) {
     return (pixel + 0.5) * scale;
   }
@@ -186,7 +186,7 @@ final class FrameRenderer {
     return decoded;
   }
 
-  /** Null if the bytes are no image of the stated size. */
+  /** Null if the bytes are not an image of the stated size. */
   static BufferedImage decode(image_t message) {
     switch (message.encoding) {
       case image_t.ENCODING_JPEG:

@@ -3,10 +3,10 @@ package airdos.spy;
 import java.util.Map;
 import java.util.TreeMap;
 
-/** The last messages of one channel by image number, of one session. Not thread-safe. */
+/** The last messages of one channel in one session, by image number. Not thread-safe. */
 final class SeqBuffer<T> {
   static final int CAPACITY = 30;
-  /** An image number that falls back by more than this means that the source started again. */
+  /** If image numbers go back by more than this, the source has restarted. */
   static final long RESTART_GAP = 5;
 
   private final TreeMap<Long, T> messages = new TreeMap<>();
@@ -32,7 +32,7 @@ final class SeqBuffer<T> {
     return messages.lastKey();
   }
 
-  /** The message of that image, or null. */
+  /** The message for that image, or null. */
   T get(long messageSession, long seq) {
     return messageSession == session ? messages.get(seq) : null;
   }

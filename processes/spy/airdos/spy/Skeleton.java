@@ -7,7 +7,7 @@ import java.util.Arrays;
 final class Skeleton {
   static final int NUM_JOINTS = 14;
 
-  /** Pairs of joint ids. */
+  /** Pairs of joint numbers. */
   static final int[][] SEGMENTS = {
     {1, 2}, {1, 5}, {2, 8}, {5, 11}, {8, 11}, {2, 3}, {3, 4},
     {5, 6}, {6, 7}, {8, 9}, {9, 10}, {11, 12}, {12, 13}, {1, 0}
@@ -21,8 +21,8 @@ final class Skeleton {
   private Skeleton() {}
 
   /**
-   * Pixels of the body joints of one person as {u, v}; null where a joint was not seen. All are
-   * null where the layout is unknown or the message is too short for it.
+   * Pixels of one person's body joints as {u, v}; null for a joint that was not seen. All are
+   * null if the layout is unknown or the message is too short for it.
    */
   static float[][] jointsPx(person_keypoints_t message, int person) {
     float[][] joints = new float[NUM_JOINTS][];
@@ -59,7 +59,7 @@ final class Skeleton {
     return Float.isFinite(pixel[0]) && Float.isFinite(pixel[1]) ? pixel : null;
   }
 
-  /** The same for joints given by id, as human_observation_t has them. */
+  /** The same for joints given by number, as in human_observation_t. */
   static float[][] jointsPx(byte[] ids, float[] u, float[] v) {
     float[][] joints = new float[NUM_JOINTS][];
     for (int i = 0; i < ids.length; ++i) {
@@ -69,7 +69,7 @@ final class Skeleton {
     return joints;
   }
 
-  /** The topmost joint that was seen, or null: where a label goes. */
+  /** The topmost visible joint, where the label goes; or null. */
   static float[] topOf(float[][] joints) {
     return Arrays.stream(joints)
         .filter(joint -> joint != null)

@@ -5,9 +5,7 @@ import java.awt.BorderLayout;
 import java.awt.Color;
 import java.awt.Component;
 import java.awt.Dimension;
-import java.awt.event.ActionEvent;
 import java.io.IOException;
-import javax.swing.AbstractAction;
 import javax.swing.Action;
 import javax.swing.JDesktopPane;
 import javax.swing.JInternalFrame;
@@ -24,8 +22,8 @@ import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
 /**
- * Opens for STATUS: one row for each process, red where it is not READY or has fallen silent, yellow
- * where it warns.
+ * Opens for STATUS: one row per process, red if it is not READY or has fallen silent, yellow if
+ * it has warnings.
  */
 public final class StatusPlugin implements SpyPlugin {
   static final String NAME = "Processes";
@@ -40,15 +38,10 @@ public final class StatusPlugin implements SpyPlugin {
     return fingerprint == process_status_t.LCM_FINGERPRINT;
   }
 
-  /** Called with nulls first, for the name only. */
+  /** First called with nulls, only for the name. */
   @Override
   public Action getAction(JDesktopPane desktop, ChannelData channel) {
-    return new AbstractAction(NAME) {
-      @Override
-      public void actionPerformed(ActionEvent event) {
-        if (desktop != null) open(desktop, channel);
-      }
-    };
+    return PluginWindow.action(NAME, desktop, () -> open(desktop, channel));
   }
 
   private static void open(JDesktopPane desktop, ChannelData channel) {
@@ -61,25 +54,25 @@ public final class StatusPlugin implements SpyPlugin {
             process_status_t status = new process_status_t(stream);
             SwingUtilities.invokeLater(() -> model.add(status, nowMs()));
           } catch (IOException | RuntimeException e) {
-            // The spy's own column counts what does not decode.
+            // The spy's own column counts messages that do not decode.
           }
         };
     lcm.subscribe(name, subscriber);
 
     JPanel panel = new JPanel(new BorderLayout());
     panel.add(new JScrollPane(newTable(model)));
-    JInternalFrame window = CameraPlugin.newWindow(NAME, panel, desktop, SIZE);
+    JInternalFrame window = PluginWindow.open(NAME, panel, desktop, SIZE);
     Timer timer = new Timer(REFRESH_MS, event -> model.refresh(nowMs()));
     Runnable stop =
         () -> {
           timer.stop();
           lcm.unsubscribe(name, subscriber);
         };
-    CameraPlugin.onClose(window, desktop, stop);
+    PluginWindow.onClose(window, desktop, stop);
     timer.start();
   }
 
-  /** For ages only, so not the wall clock, which may be set back. */
+  /** For ages only. Not the wall clock, which may be set back. */
   private static long nowMs() {
     return System.nanoTime() / 1_000_000;
   }

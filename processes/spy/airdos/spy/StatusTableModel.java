@@ -10,12 +10,12 @@ import java.util.TreeMap;
 import java.util.function.Function;
 import javax.swing.table.AbstractTableModel;
 
-/** One row for each process, from its last STATUS. For Swing's thread only. */
+/** One row per process, from its last STATUS. For Swing's thread only. */
 final class StatusTableModel extends AbstractTableModel {
-  /** A process speaks every second; after this long its row says so. */
+  /** A process publishes every second; after this long its row shows that it has stopped. */
   static final long SILENT_AFTER_MS = 3000;
 
-  /** In this order: what the user must see first. */
+  /** In order of importance to the user. */
   enum Column {
     PROCESS("process", 110, status -> status.process),
     STATE("state", 75, status -> stateOf(status.state)),
@@ -32,7 +32,7 @@ final class StatusTableModel extends AbstractTableModel {
     CPU("cpu ms/frame", 90, status -> tenths(status.cpu_ms_per_frame)),
     MEMORY("memory MB", 80, status -> tenths(status.memory_mb)),
     VERSION("version", 50, status -> status.version),
-    /** The same in each row, unless somebody was built with other message types. */
+    /** The same in every row, unless a process was built with different message types. */
     TYPES("types", 82, status -> beginning(status.types_fingerprint));
 
     final String title;
@@ -46,7 +46,7 @@ final class StatusTableModel extends AbstractTableModel {
     }
   }
 
-  /** Digits of a fingerprint: enough to tell two apart. */
+  /** Digits of a fingerprint shown: enough to distinguish two. */
   private static final int SHOWN_OF_TYPES = 8;
 
   private static final class Row {
@@ -54,7 +54,7 @@ final class StatusTableModel extends AbstractTableModel {
     long heardAtMs;
   }
 
-  /** Whoever invents names of processes must not fill the memory. */
+  /** Limit, so that invented process names cannot fill the memory. */
   static final int MAX_PROCESSES = 100;
 
   private final Map<String, Row> rows = new TreeMap<>();
@@ -68,7 +68,7 @@ final class StatusTableModel extends AbstractTableModel {
     refresh(atMs);
   }
 
-  /** Shows who has fallen silent by now. */
+  /** Updates which processes have fallen silent. */
   void refresh(long atMs) {
     nowMs = Math.max(nowMs, atMs);
     fireTableDataChanged();
