@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 #include <sstream>
+#include <system_error>
 
 #include "common/calibration/rig_formats.h"
 #include "common/calibration/rigid_matrix.h"

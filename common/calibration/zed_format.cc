@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <sstream>
+#include <system_error>
 
 #include "common/calibration/rig_formats.h"
 #include "common/util/error.h"

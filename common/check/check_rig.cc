@@ -5,6 +5,7 @@
 
 #include "common/check/stereo_matches.h"
 #include "common/util/error.h"
+#include "common/util/quantile.h"
 
 namespace airdos {
 namespace {

@@ -1,6 +1,7 @@
 // airdos-calibration: what a calibration file says, whether it fits images, and the same in another
 // format.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
