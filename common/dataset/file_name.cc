@@ -14,6 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr char kNumberMark = '\0';  // a file name may contain any other character
+
 bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
 std::size_t EndOfDigits(const std::string& text, std::size_t at) {
@@ -95,7 +97,7 @@ FileName TakeApart(const std::string& name) {
       number += "." + WithoutTrailingZeros(stem.substr(decimals, end - decimals));
     }
     result.numbers.push_back(number);
-    result.pattern += '#';
+    result.pattern += kNumberMark;
     i = end;
   }
   return result;
@@ -113,14 +115,14 @@ std::string NameSeries::KeyOf(const FileName& name) const {
 }
 
 std::vector<NameSeries> GroupNames(const std::vector<std::string>& names) {
-  std::map<std::string, NameSeries> by_pattern;
+  std::map<std::pair<std::string, std::size_t>, NameSeries> by_pattern;
   for (const std::string& name : names) {
     FileName taken_apart = TakeApart(name);
-    by_pattern[taken_apart.pattern].names.push_back(std::move(taken_apart));
+    NameSeries& group = by_pattern[{taken_apart.pattern, taken_apart.numbers.size()}];
+    group.names.push_back(std::move(taken_apart));
   }
   std::vector<NameSeries> series;
   for (auto& [pattern, group] : by_pattern) {
-    group.pattern = pattern;
     std::sort(group.names.begin(), group.names.end(), IsNameLess);
     group.counting = FindCountingNumber(group.names);
     series.push_back(std::move(group));

@@ -7,11 +7,11 @@
 
 namespace airdos {
 
-/// A parsed file name: "left_000012_10.png" has the pattern "left_#_#" and the numbers 12 and 10.
+/// A parsed file name: "left_000012_10.png" has the pattern "left_\0_\0" and the numbers 12 and 10.
 struct FileName {
   std::string name;
   std::string stem;     ///< without the extension
-  std::string pattern;  ///< the stem with a # for each number
+  std::string pattern;  ///< the stem with a zero byte for each number
   /// Digits, possibly with decimals, without redundant zeros: "12" for 0012, "1.5" for 1.50.
   std::vector<std::string> numbers;
 };
@@ -23,7 +23,6 @@ bool IsNumberLess(const std::string& a, const std::string& b);
 
 /// Files whose names differ only in their numbers, in natural order.
 struct NameSeries {
-  std::string pattern;
   std::vector<FileName> names;
   /// Index of the number that counts the files; -1 if there is none.
   int counting = -1;

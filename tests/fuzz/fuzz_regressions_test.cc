@@ -26,6 +26,11 @@ FuzzBytes FromHex(const std::string& hex) {
 }
 
 const Finding kFindings[] = {
+    // A # in the name of a file was taken for one of its numbers.
+    {"HashInAFileName", "image_names",
+     "0325260073686f74316f66322e706e670a73686f74326f66327060670a250073680000236f66322e706e670a"
+     "2e706e670a6f74686572372e7060670a250073680000306f66322e706e670a73686f74326f66322e706e620a"
+     "6f74686572372e70286e670a"},
     // A zero byte within a text, which is encoded as a shorter one than its size says.
     {"ZeroByteInAText", "messages",
      "0900000000000003e8000000000000000a000000000000000700000011616972646f732e0000000000000065720"

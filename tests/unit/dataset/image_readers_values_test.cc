@@ -122,6 +122,17 @@ TEST_F(ImageReadersValuesTest, OneStrayAmongThreeIsNoRival) {
   EXPECT_EQ(ListImages(folder_.path()).files.size(), 3u);
 }
 
+TEST_F(ImageReadersValuesTest, AHashInANameIsNoNumber) {
+  for (const char* name : {"left3of4.png", "left4of4.png", "left5of4.png", "left#of4.png"}) {
+    folder_.Write(name);
+  }
+  const ImageNames names = ListImages(folder_.path());
+  EXPECT_EQ(names.files,
+            (std::vector<std::string>{"left3of4.png", "left4of4.png", "left5of4.png"}));
+  ASSERT_EQ(names.notes.size(), 1u);
+  EXPECT_TRUE(Holds(names.notes[0], "'left#of4.png'"));
+}
+
 TEST(ImageNamesValuesTest, TimesOfNames) {
   const auto times = TimesFromNames(Images({1403636579763555584, 1403636579813555584}));
   ASSERT_TRUE(times);
