@@ -99,8 +99,8 @@ int Check(const Arguments& arguments) {
 CLI::App* AddCommand(const std::string& name, const std::string& text, Arguments* arguments,
                      CLI::App* app) {
   CLI::App* const command = app->add_subcommand(name, text);
-  arguments->calibration.AddTo("FILE", command);
-  command->get_option("FILE")->required();
+  arguments->calibration.AddTo("INPUT", command);
+  command->get_option("INPUT")->required();
   return command;
 }
 
@@ -111,6 +111,7 @@ int Run(int argc, char** argv) {
       "1: it does not fit the images; 2: it cannot be read.",
       "airdos-calibration");
   app.require_subcommand(1);
+  app.fallthrough();
   Arguments arguments;
   CLI::App* const show =
       AddCommand("show", "Print cameras, baseline and the rectified pair", &arguments, &app);
