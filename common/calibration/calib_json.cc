@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/calibration/camera_causes.h"
+#include "common/calibration/camera_matrix.h"
 #include "common/util/error.h"
 #include "common/util/input_file.h"
 
@@ -184,6 +185,13 @@ void CheckSize(const nlohmann::json& json, const std::string& path, std::pair<in
 }
 
 }  // namespace
+
+std::pair<int, int> ReadCalibJsonSize(const std::string& path) {
+  const nlohmann::json json = ParseJson(path);
+  if (!json.contains("width") || !json.contains("height")) return {0, 0};
+  return ToImageSize(ReadNumber(json, path, "width"), ReadNumber(json, path, "height"),
+                     path + ": keys 'width' and 'height'");
+}
 
 StereoCamera ReadCalibJson(const std::string& path, std::pair<int, int> size) {
   const nlohmann::json json = ParseJson(path);

@@ -1,9 +1,5 @@
 #include "common/calibration/calibration_file.h"
 
-#include <cmath>
-#include <cstdio>
-#include <fstream>
-
 #include "common/calibration/calib_json.h"
 #include "common/calibration/rig_judge.h"
 #include "common/util/error.h"
@@ -14,7 +10,13 @@ namespace {
 
 constexpr std::size_t kMaxBytes = 1000000;
 
-CalibrationText ReadText(const std::string& path) { return {path, ReadWholeFile(path, kMaxBytes)}; }
+CalibrationText ReadText(const std::string& path) {
+  std::string text = ReadWholeFile(path, kMaxBytes);
+  if (text.rfind("\xEF\xBB\xBF", 0) == 0) text.erase(0, 3);
+  if (text.rfind("\xFF\xFE", 0) == 0 || text.rfind("\xFE\xFF", 0) == 0)
+    throw InputError(path + ": is UTF-16: save it as UTF-8");
+  return {path, text};
+}
 
 std::string FormatList() {
   std::string list;
@@ -29,13 +31,15 @@ std::string FormatList() {
 }
 
 StereoRig ReadJson(const CalibrationText& file, const FormatOptions& options) {
-  if (options.image_size.first == 0) {
+  std::pair<int, int> size = ReadCalibJsonSize(file.path);
+  if (size.first == 0) size = options.chosen_size();
+  if (size.first == 0) {
     throw InputError(file.path +
                      ": does not say the images' size: say it with --size WIDTHxHEIGHT");
   }
   StereoRig rig;
   rig.format = "calib.json";
-  rig.rectified = ReadCalibJson(file.path, options.image_size);
+  rig.rectified = ReadCalibJson(file.path, size);
   rig.are_images_rectified = true;
   const StereoCamera& camera = *rig.rectified;
   rig.left = {camera.width, camera.height, camera.fx_px,     camera.fy_px,
@@ -43,6 +47,19 @@ StereoRig ReadJson(const CalibrationText& file, const FormatOptions& options) {
   rig.right = rig.left;
   rig.T_L_R.translation = Eigen::Vector3d(camera.baseline_m, 0, 0);
   return rig;
+}
+
+/// What a file may be that is no calibration of a pair, for whoever took the wrong one.
+[[noreturn]] void ThrowUnknown(const CalibrationText& file) {
+  const auto has = [&file](const char* text) { return file.text.find(text) != std::string::npos; };
+  if (has("<opencv_storage>"))
+    throw InputError(file.path + ": is OpenCV's XML, which is not read: save it as .yml");
+  if (has("cam0:") || (has("fx") && has("[image]")))
+    throw InputError(file.path + ": is the calibration of a single camera; a pair's is needed");
+  if (has("reprojection error") && has("baseline T_1_0"))
+    throw InputError(file.path + ": is Kalibr's report; give the camchain .yaml beside it");
+  throw InputError(file.path + ": is no calibration file of a stereo pair that is known (" +
+                   FormatList() + ")");
 }
 
 StereoRig ReadOne(const CalibrationText& file, const FormatOptions& options) {
@@ -54,11 +71,7 @@ StereoRig ReadOne(const CalibrationText& file, const FormatOptions& options) {
   if (IsCalibJson(file)) return ReadJson(file, options);
   if (IsRosCameraInfo(file)) NeedsBoth(file.path, "ROS camera_info");
   if (IsEurocSensor(file)) NeedsBoth(file.path, "EuRoC sensor.yaml");
-  if (file.text.find("<opencv_storage>") != std::string::npos) {
-    throw InputError(file.path + ": is OpenCV's XML, which is not read: save it as .yml");
-  }
-  throw InputError(file.path + ": is no calibration file of a stereo pair that is known (" +
-                   FormatList() + ")");
+  ThrowUnknown(file);
 }
 
 StereoRig ReadTwo(const CalibrationText& left, const CalibrationText& right,
@@ -74,7 +87,7 @@ StereoRig ReadTwo(const CalibrationText& left, const CalibrationText& right,
 }  // namespace
 
 bool IsCalibJson(const CalibrationText& file) {
-  const std::size_t first = file.text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  const std::size_t first = file.text.find_first_not_of(" \t\r\n");
   return first != std::string::npos && file.text[first] == '{';
 }
 
@@ -96,6 +109,7 @@ StereoRig ReadStereoRig(const std::vector<std::string>& paths, const Calibration
   const CalibrationText first = ReadText(paths[0]);
   StereoRig rig = paths.size() == 1 ? ReadOne(first, options.format)
                                     : ReadTwo(first, ReadText(paths[1]), options.format);
+  rig.files = paths;
   const std::string where = paths.size() == 1 ? paths[0] : paths[0] + ", " + paths[1];
   JudgeRig(where, options, &rig);
   return rig;

@@ -16,8 +16,8 @@ struct CalibrationOptions {
   bool swap = false;                  ///< the file's first camera is the right one
   bool are_images_rectified = false;  ///< with the rectification that the file itself describes
   bool scale = false;  ///< the images are those that were calibrated, made larger or smaller
-  std::optional<double>
-      baseline_unit_m;  ///< length of the file's unit; otherwise judged by its size
+  /// Length of the file's unit; otherwise judged by its size.
+  std::optional<double> baseline_unit_m;
 };
 
 /// The names of the formats that ReadStereoRig() knows, for help texts.

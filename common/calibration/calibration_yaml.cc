@@ -2,7 +2,6 @@
 
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "common/util/error.h"
@@ -33,7 +32,6 @@ std::string Plain(const std::string& text) {
   std::string line;
   while (std::getline(lines, line)) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);
     if (line.rfind("%YAML", 0) == 0) line.clear();
     const std::size_t at = MissingBlank(line);
     if (at != std::string::npos) line.insert(at, " ");
@@ -101,14 +99,6 @@ std::string CalibrationYaml::Text(const std::string& key) const {
 }
 
 double CalibrationYaml::Number(const std::string& key) const { return Numbers(key, 1).front(); }
-
-int CalibrationYaml::Whole(const std::string& key) const {
-  const double number = Number(key);
-  if (number != std::floor(number) || std::abs(number) > std::numeric_limits<int>::max()) {
-    throw InputError(Where(key) + " must be a whole number");
-  }
-  return static_cast<int>(number);
-}
 
 std::vector<double> CalibrationYaml::Numbers(const std::string& key) const {
   std::vector<double> numbers;

@@ -23,7 +23,6 @@ class CalibrationYaml {
   CalibrationYaml Section(const std::string& key) const;
   std::string Text(const std::string& key) const;
   double Number(const std::string& key) const;
-  int Whole(const std::string& key) const;
   /// All numbers below a key in the order of the file: a list, a list of lists, an OpenCV matrix
   /// (rows, cols, data), or a single number.
   std::vector<double> Numbers(const std::string& key) const;

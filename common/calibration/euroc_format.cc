@@ -1,6 +1,5 @@
-#include <cmath>
-
 #include "common/calibration/calibration_yaml.h"
+#include "common/calibration/camera_matrix.h"
 #include "common/calibration/rig_formats.h"
 #include "common/calibration/rigid_matrix.h"
 #include "common/util/error.h"
@@ -20,9 +19,10 @@ LensModel EurocLens(const CalibrationYaml& yaml) {
 std::pair<CameraIntrinsics, Se3> ReadCamera(const CalibrationText& file) {
   const CalibrationYaml yaml = CalibrationYaml::Parse(file.text, file.path);
   const std::vector<double> size = yaml.Numbers("resolution", 2);
+  const auto [width, height] = ToImageSize(size[0], size[1], yaml.Where("resolution"));
   const std::vector<double> k = yaml.Numbers("intrinsics", 4);
-  const CameraIntrinsics camera = {static_cast<int>(std::lround(size[0])),
-                                   static_cast<int>(std::lround(size[1])),
+  const CameraIntrinsics camera = {width,
+                                   height,
                                    k[0],
                                    k[1],
                                    k[2],

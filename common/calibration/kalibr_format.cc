@@ -1,6 +1,5 @@
-#include <cmath>
-
 #include "common/calibration/calibration_yaml.h"
+#include "common/calibration/camera_matrix.h"
 #include "common/calibration/rig_formats.h"
 #include "common/calibration/rigid_matrix.h"
 #include "common/util/error.h"
@@ -34,8 +33,8 @@ CameraIntrinsics KalibrCamera(const CalibrationYaml& camera) {
     intrinsics.distortion = camera.Numbers("distortion_coeffs", 4);
   }
   const std::vector<double> size = camera.Numbers("resolution", 2);
-  intrinsics.width = static_cast<int>(std::lround(size[0]));
-  intrinsics.height = static_cast<int>(std::lround(size[1]));
+  std::tie(intrinsics.width, intrinsics.height) =
+      ToImageSize(size[0], size[1], camera.Where("resolution"));
   return intrinsics;
 }
 

@@ -3,15 +3,15 @@
 #include <map>
 #include <sstream>
 #include <system_error>
+#include <tuple>
 
+#include "common/calibration/camera_matrix.h"
 #include "common/calibration/rig_formats.h"
 #include "common/calibration/rigid_matrix.h"
 #include "common/util/error.h"
 
 namespace airdos {
 namespace {
-
-using Row = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
 
 /// "KEY: numbers" lines; lines of other kinds (dates) are left out.
 class KittiLines {
@@ -48,11 +48,8 @@ class KittiLines {
     }
     return numbers;
   }
-  Row Projection(const std::string& key) const {
-    const Row P = Eigen::Map<const Row>(Numbers(key, 12).data());
-    if (!(P(0, 0) > 0))
-      throw InputError(Where(key) + ": the first number (focal length, px) must be above 0");
-    return P;
+  ProjectionMatrix Projection(const std::string& key) const {
+    return ToProjection(Numbers(key, 12), Where(key));
   }
 
  private:
@@ -61,16 +58,6 @@ class KittiLines {
 };
 
 std::string TwoDigits(int camera) { return "0" + std::to_string(camera); }
-
-StereoCamera RectifiedPair(const Row& left, const Row& right, std::pair<int, int> size) {
-  return {size.first,
-          size.second,
-          left(0, 0),
-          left(1, 1),
-          left(0, 2),
-          left(1, 2),
-          (left(0, 3) - right(0, 3)) / left(0, 0)};
-}
 
 void SetRectified(const StereoCamera& camera, StereoRig* rig) {
   rig->rectified = camera;
@@ -82,16 +69,23 @@ void SetRectified(const StereoCamera& camera, StereoRig* rig) {
   rig->T_L_R.translation = Eigen::Vector3d(camera.baseline_m, 0, 0);
 }
 
+[[noreturn]] void ThrowNoPair(const KittiLines& lines, const std::string& key,
+                              std::pair<int, int> cameras) {
+  throw InputError(lines.Where(key + std::to_string(cameras.second)) + " differs from camera " +
+                   std::to_string(cameras.first) +
+                   "'s in more than its fourth number: no rectified pair");
+}
+
 struct RawCamera {
   CameraIntrinsics intrinsics;
   std::pair<int, int> rectified_size;
   Se3 T_i_0;  // p_i = T_i_0 * p_0
-  Row P;
+  ProjectionMatrix P;
 };
 
 std::pair<int, int> SizeAt(const KittiLines& lines, const std::string& key) {
   const std::vector<double> size = lines.Numbers(key, 2);
-  return {static_cast<int>(std::lround(size[0])), static_cast<int>(std::lround(size[1]))};
+  return ToImageSize(size[0], size[1], lines.Where(key));
 }
 
 RawCamera ReadRawCamera(const KittiLines& lines, int number) {
@@ -101,16 +95,10 @@ RawCamera ReadRawCamera(const KittiLines& lines, int number) {
         lines.Numbers(key, 9).data());
   };
   RawCamera camera;
-  const Eigen::Matrix3d K = matrix("K_" + i);
-  const auto [width, height] = SizeAt(lines, "S_" + i);
-  camera.intrinsics = {width,
-                       height,
-                       K(0, 0),
-                       K(1, 1),
-                       K(0, 2),
-                       K(1, 2),
-                       LensModel::kRadialTangential,
-                       lines.Numbers("D_" + i, 5)};
+  camera.intrinsics = ToIntrinsics(matrix("K_" + i), lines.Where("K_" + i));
+  std::tie(camera.intrinsics.width, camera.intrinsics.height) = SizeAt(lines, "S_" + i);
+  camera.intrinsics.lens = LensModel::kRadialTangential;
+  camera.intrinsics.distortion = lines.Numbers("D_" + i, 5);
   camera.rectified_size = SizeAt(lines, "S_rect_" + i);
   camera.T_i_0.rotation = Eigen::Quaterniond(ToRotation(matrix("R_" + i), lines.Where("R_" + i)));
   camera.T_i_0.translation = Eigen::Map<const Eigen::Vector3d>(lines.Numbers("T_" + i, 3).data());
@@ -128,7 +116,8 @@ StereoRig ReadRaw(const KittiLines& lines, const FormatOptions& options) {
   rig.T_L_R = left.T_i_0 * right.T_i_0.inverse();
   rig.rectified = RectifiedPair(left.P, right.P, left.rectified_size);
   const std::pair<int, int> raw_size = {rig.left.width, rig.left.height};
-  if (options.image_size == left.rectified_size && left.rectified_size != raw_size) {
+  if (options.chosen_size() == left.rectified_size && left.rectified_size != raw_size) {
+    if (!rig.rectified) ThrowNoPair(lines, "P_rect_0", options.kitti_cameras);
     SetRectified(*rig.rectified, &rig);
     rig.notes.push_back("the images have the size of S_rect: they are taken as rectified");
   }
@@ -150,9 +139,11 @@ StereoRig ReadKitti(const CalibrationText& file, const FormatOptions& options) {
   if (lines.Has("P_rect_" + TwoDigits(left))) {
     rig = ReadRaw(lines, options);
   } else {
-    SetRectified(RectifiedPair(lines.Projection("P" + std::to_string(left)),
-                               lines.Projection("P" + std::to_string(right)), options.image_size),
-                 &rig);
+    const auto pair =
+        RectifiedPair(lines.Projection("P" + std::to_string(left)),
+                      lines.Projection("P" + std::to_string(right)), options.chosen_size());
+    if (!pair) ThrowNoPair(lines, "P", options.kitti_cameras);
+    SetRectified(*pair, &rig);
     rig.format = "KITTI calib.txt";
   }
   rig.notes.push_back("cameras " + std::to_string(left) + " and " + std::to_string(right) +

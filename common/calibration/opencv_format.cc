@@ -1,6 +1,7 @@
-#include <cmath>
+#include <tuple>
 
 #include "common/calibration/calibration_yaml.h"
+#include "common/calibration/camera_matrix.h"
 #include "common/calibration/rig_formats.h"
 #include "common/calibration/rigid_matrix.h"
 #include "common/util/error.h"
@@ -112,28 +113,24 @@ std::optional<LensModel> SaidLens(const OpencvMaps& maps) {
 std::pair<int, int> SizeOf(const OpencvMaps& maps) {
   if (const auto size = maps.Find(kSize)) {
     const std::vector<double> numbers = size->first->Numbers(size->second, 2);
-    return {static_cast<int>(std::lround(numbers[0])), static_cast<int>(std::lround(numbers[1]))};
+    return ToImageSize(numbers[0], numbers[1], size->first->Where(size->second));
   }
   const auto width = maps.Find(kWidth);
   const auto height = maps.Find(kHeight);
   if (!width || !height) return {0, 0};
-  return {width->first->Whole(width->second), height->first->Whole(height->second)};
+  return ToImageSize(width->first->Number(width->second), height->first->Number(height->second),
+                     width->first->Where(width->second));
 }
 
 CameraIntrinsics ReadCamera(const OpencvMaps& maps, const Names& matrix_names,
                             const Names& distortion_names) {
   const auto [matrix_map, matrix_name] = maps.Get(matrix_names);
-  const Eigen::Matrix3d K = matrix_map->Matrix3(matrix_name);
+  CameraIntrinsics camera =
+      ToIntrinsics(matrix_map->Matrix3(matrix_name), matrix_map->Where(matrix_name));
   const auto [distortion_map, distortion_name] = maps.Get(distortion_names);
-  const auto [width, height] = SizeOf(maps);
-  return {width,
-          height,
-          K(0, 0),
-          K(1, 1),
-          K(0, 2),
-          K(1, 2),
-          LensModel::kRadialTangential,
-          distortion_map->Numbers(distortion_name)};
+  camera.distortion = distortion_map->Numbers(distortion_name);
+  std::tie(camera.width, camera.height) = SizeOf(maps);
+  return camera;
 }
 
 void ChooseLens(const OpencvMaps& maps, const FormatOptions& options, StereoRig* rig) {
@@ -141,6 +138,7 @@ void ChooseLens(const OpencvMaps& maps, const FormatOptions& options, StereoRig*
   const LensModel lens = options.lens.value_or(said.value_or(LensModel::kRadialTangential));
   rig->left.lens = rig->right.lens = lens;
   if (!options.lens && !said && rig->left.distortion.size() == 4) {
+    rig->is_lens_assumed = true;
     rig->notes.push_back(
         "the 4 distortion coefficients are taken as k1 k2 p1 p2; if they are of cv::fisheye, say "
         "--lens fisheye");

@@ -1,6 +1,7 @@
-#include <cmath>
+#include <tuple>
 
 #include "common/calibration/calibration_yaml.h"
+#include "common/calibration/camera_matrix.h"
 #include "common/calibration/rig_formats.h"
 #include "common/calibration/rigid_matrix.h"
 #include "common/util/error.h"
@@ -8,11 +9,17 @@
 namespace airdos {
 namespace {
 
+std::pair<int, int> ReadSize(const CalibrationYaml& yaml, const std::string& prefix) {
+  return ToImageSize(yaml.Number(prefix + "width"), yaml.Number(prefix + "height"),
+                     yaml.Where(prefix + "width"));
+}
+
 /// fx, fy, cx, cy below a prefix ("Camera.", "Camera1.").
 CameraIntrinsics ReadPinhole(const CalibrationYaml& yaml, const std::string& prefix) {
   CameraIntrinsics camera;
-  camera.width = yaml.Has("Camera.width") ? yaml.Whole("Camera.width") : 0;
-  camera.height = yaml.Has("Camera.height") ? yaml.Whole("Camera.height") : 0;
+  if (yaml.Has("Camera.width") || yaml.Has("Camera.height")) {
+    std::tie(camera.width, camera.height) = ReadSize(yaml, "Camera.");
+  }
   camera.fx_px = yaml.Number(prefix + "fx");
   camera.fy_px = yaml.Number(prefix + "fy");
   camera.cx_px = yaml.Number(prefix + "cx");
@@ -64,35 +71,25 @@ StereoRig ReadUnrectified(const CalibrationYaml& yaml) {
   struct Side {
     CameraIntrinsics camera;
     Eigen::Matrix3d R;
-    std::vector<double> P;
+    ProjectionMatrix P;
   };
   const auto read = [&](const std::string& prefix) {
     Side side;
-    const Eigen::Matrix3d K = yaml.Matrix3(prefix + "K");
-    side.camera = {yaml.Whole(prefix + "width"),
-                   yaml.Whole(prefix + "height"),
-                   K(0, 0),
-                   K(1, 1),
-                   K(0, 2),
-                   K(1, 2),
-                   LensModel::kRadialTangential,
-                   yaml.Numbers(prefix + "D")};
+    side.camera = ToIntrinsics(yaml.Matrix3(prefix + "K"), yaml.Where(prefix + "K"));
+    std::tie(side.camera.width, side.camera.height) = ReadSize(yaml, prefix);
+    side.camera.lens = LensModel::kRadialTangential;
+    side.camera.distortion = yaml.Numbers(prefix + "D");
     side.R = ToRotation(yaml.Matrix3(prefix + "R"), yaml.Where(prefix + "R"));
-    side.P = yaml.Numbers(prefix + "P", 12);
-    if (!(side.P[0] > 0))
-      throw InputError(yaml.Where(prefix + "P") +
-                       ": the first number (focal length, px) must be above 0");
+    side.P = ToProjection(yaml.Numbers(prefix + "P"), yaml.Where(prefix + "P"));
     return side;
   };
   const Side left = read("LEFT.");
   const Side right = read("RIGHT.");
-  const double baseline_m = (left.P[3] - right.P[3]) / left.P[0];
   StereoRig rig;
   rig.left = left.camera;
   rig.right = right.camera;
-  rig.T_L_R = RelativePose(left.R, right.R, baseline_m);
-  rig.rectified = StereoCamera{rig.left.width, rig.left.height, left.P[0], left.P[5],
-                               left.P[2],      left.P[6],       baseline_m};
+  rig.T_L_R = RelativePose(left.R, right.R, BaselineOf(left.P, right.P));
+  rig.rectified = RectifiedPair(left.P, right.P, {rig.left.width, rig.left.height});
   return rig;
 }
 

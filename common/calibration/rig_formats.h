@@ -22,8 +22,16 @@ struct CalibrationText {
 
 /// What some files leave open.
 struct FormatOptions {
+  /// The size by which one of several resolutions in a file is chosen; 0 = not known.
+  std::pair<int, int> chosen_size() const {
+    return calibrated_size.first != 0 ? calibrated_size : image_size;
+  }
+
   std::optional<LensModel> lens;            ///< where four coefficients may be either model's
-  std::pair<int, int> image_size = {0, 0};  ///< px; chooses among resolutions (ZED); 0 = not known
+  std::pair<int, int> image_size = {0, 0};  ///< of the user's images, px; 0 = not known
+  /// Of the images that were calibrated, px, where the user says it; 0 = the file says it, or else
+  /// they are the user's images.
+  std::pair<int, int> calibrated_size = {0, 0};
   std::pair<int, int> kitti_cameras = {0, 1};
 };
 

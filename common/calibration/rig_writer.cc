@@ -1,20 +1,15 @@
 #include "common/calibration/rig_writer.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "common/util/error.h"
-#include "common/util/json_file.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
 
-std::string Exact(double value) {
-  char text[40];
-  std::snprintf(text, sizeof(text), "%.17g", value);
-  return text;
-}
+std::string Exact(double value) { return Format("%.17g", value); }
 
 /// "[1, 2]"; every YAML reader takes it.
 std::string List(const std::vector<double>& values) {

@@ -19,9 +19,8 @@ struct NamedText {
 const std::vector<std::string>& WrittenFormats();
 
 /// A rig in the format of another tool, with all digits, as one file ("kalibr.yaml") or one a
-/// camera
-/// ("left.yaml", "right.yaml"). calib.json holds the rectified pair only, and so fits the images
-/// that `rectifier` makes. Throws InputError where the format cannot say what the rig is:
+/// camera ("left.yaml", "right.yaml"). calib.json holds the rectified pair only, and so fits the
+/// images that `rectifier` makes. Throws InputError where the format cannot say what the rig is:
 /// distortion that the format does not know, or images that are rectified already (which only
 /// calib.json is for).
 std::vector<NamedText> WriteRig(const StereoRig& rig, const StereoRectifier& rectifier,

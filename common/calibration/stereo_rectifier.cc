@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "common/util/error.h"
+#include "common/util/format.h"
 
 namespace airdos {
 namespace {
@@ -74,10 +74,8 @@ void StereoRectifier::LimitFieldOfView(double max_deg) {
   camera_.fx_px = camera_.fy_px = min_focal_length_px;
   camera_.cx_px = 0.5 * (camera_.width - 1);
   camera_.cy_px = 0.5 * (camera_.height - 1);
-  char text[120];
-  std::snprintf(text, sizeof(text),
-                "the lens sees more than the %.4g degrees that the rectified images show", max_deg);
-  notes_.push_back(text);
+  notes_.push_back(
+      Format("the lens sees more than the %.4g degrees that the rectified images show", max_deg));
 }
 
 void StereoRectifier::SetRotation(const cv::Matx33d& R, Side* side) {

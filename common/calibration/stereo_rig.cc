@@ -1,7 +1,7 @@
 #include "common/calibration/stereo_rig.h"
 
 #include <algorithm>
-#include <cmath>
+#include <tuple>
 
 namespace airdos {
 
@@ -15,16 +15,16 @@ StereoRig Swapped(const StereoRig& rig) {
   return swapped;
 }
 
-CameraIntrinsics Scaled(const CameraIntrinsics& camera, double factor) {
-  CameraIntrinsics scaled = camera;
-  scaled.width = static_cast<int>(std::lround(camera.width * factor));
-  scaled.height = static_cast<int>(std::lround(camera.height * factor));
-  scaled.fx_px *= factor;
-  scaled.fy_px *= factor;
-  // Pixel centres are whole numbers, so the corner of the image is at -0.5.
-  scaled.cx_px = (camera.cx_px + 0.5) * factor - 0.5;
-  scaled.cy_px = (camera.cy_px + 0.5) * factor - 0.5;
-  return scaled;
+CameraIntrinsics Resized(const CameraIntrinsics& camera, std::pair<int, int> size) {
+  const double by_width = static_cast<double>(size.first) / camera.width;
+  const double by_height = static_cast<double>(size.second) / camera.height;
+  CameraIntrinsics resized = camera;
+  std::tie(resized.width, resized.height) = size;
+  resized.fx_px *= by_width;
+  resized.fy_px *= by_height;
+  resized.cx_px = (camera.cx_px + 0.5) * by_width - 0.5;
+  resized.cy_px = (camera.cy_px + 0.5) * by_height - 0.5;
+  return resized;
 }
 
 Se3 RelativePose(const Eigen::Matrix3d& R_rect_L, const Eigen::Matrix3d& R_rect_R,

@@ -42,9 +42,12 @@ struct StereoRig {
   std::optional<StereoCamera> rectified;
   /// The images are rectified already: they are taken as they are, and `rectified` is their camera.
   bool are_images_rectified = false;
-  std::string format;  ///< for example "Kalibr camera chain"
-  std::vector<std::string>
-      notes;  ///< what was assumed, converted or left out: a line each, to be shown
+  std::vector<std::string> files;  ///< that it was read from
+  std::string format;              ///< for example "Kalibr camera chain"
+  /// The file has four coefficients that may be either lens model's, and says neither.
+  bool is_lens_assumed = false;
+  /// What was assumed, converted or left out: a line each, to be shown.
+  std::vector<std::string> notes;
 };
 
 /// Length of T_L_R's translation, m.
@@ -54,8 +57,9 @@ double BaselineOf(const StereoRig& rig);
 /// for the old order only.
 StereoRig Swapped(const StereoRig& rig);
 
-/// The same cameras for images whose sides are `factor` times as long.
-CameraIntrinsics Scaled(const CameraIntrinsics& camera, double factor);
+/// The same camera, whose images were made larger or smaller to that size (px). Pixel centres are
+/// whole numbers, so the image's corner is at (-0.5, -0.5).
+CameraIntrinsics Resized(const CameraIntrinsics& camera, std::pair<int, int> size);
 
 /// T_L_R of a pair whose rectifying rotations are known: p_rect = R_rect_L * p_L in the left
 /// camera, p_rect = R_rect_R * p_R in the right one, whose centre is (baseline_m, 0, 0) in

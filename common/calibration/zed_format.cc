@@ -112,7 +112,7 @@ bool IsZed(const CalibrationText& file) {
 
 StereoRig ReadZed(const CalibrationText& file, const FormatOptions& options) {
   const ZedValues values(file);
-  const Resolution resolution = Choose(values, options.image_size);
+  const Resolution resolution = Choose(values, options.chosen_size());
   const std::string name = resolution.name;
   const auto stereo = [&](const std::string& key) {
     return values.Has("STEREO." + key + "_" + name) ? values.Number("STEREO." + key + "_" + name)

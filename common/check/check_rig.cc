@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
+#include "common/calibration/camera_causes.h"
 #include "common/check/stereo_matches.h"
 #include "common/util/error.h"
 #include "common/util/quantile.h"
@@ -13,46 +15,57 @@ namespace {
 constexpr int kMaxCorners = 1500;
 constexpr int kMinMatches = 30;  // fewer tell nothing
 constexpr int kMinRegionMatches = 8;
+constexpr int kMinPairMatches = 15;
 constexpr double kGoodRowPx = 1;         // good calibrations come to 0.1 to 0.4
 constexpr double kClearlyBetter = 0.5;   // of the row error
+constexpr double kClearlyWorse = 3;      // than in other pairs
 constexpr double kExchangedShare = 0.8;  // of the disparities are negative
 constexpr double kNoSignPx = 0.3;
 
-/// All matches of the pairs after `map_left` and `map_right` changed the images.
+/// The matches of each pair after `map_left` and `map_right` changed its images.
 template <class Left, class Right>
-StereoMatches MatchAll(const std::vector<RawPair>& pairs, const Left& map_left,
-                       const Right& map_right) {
-  StereoMatches all;
-  for (const RawPair& pair : pairs) {
-    const StereoMatches matches =
-        MatchStereo(map_left(pair.left), map_right(pair.right), kMaxCorners);
-    all.left.insert(all.left.end(), matches.left.begin(), matches.left.end());
-    all.right.insert(all.right.end(), matches.right.begin(), matches.right.end());
-  }
+std::vector<StereoMatches> MatchAll(const std::vector<RawPair>& pairs, const Left& map_left,
+                                    const Right& map_right) {
+  std::vector<StereoMatches> all;
+  for (const RawPair& pair : pairs)
+    all.push_back(MatchStereo(map_left(pair.left), map_right(pair.right), kMaxCorners));
   return all;
 }
 
-RowStatistics Measure(const StereoMatches& matches, cv::Size size) {
+std::vector<double> AbsoluteRows(const StereoMatches& matches) {
+  std::vector<double> rows_px = matches.RowDifferences();
+  for (double& row_px : rows_px) row_px = std::abs(row_px);
+  return rows_px;
+}
+
+/// Which ninth of the image.
+std::size_t RegionOf(const cv::Point2f& at, cv::Size size) {
+  const auto third = [](float value, int length) {
+    return std::clamp(static_cast<int>(3 * value / static_cast<float>(length)), 0, 2);
+  };
+  return static_cast<std::size_t>(3 * third(at.y, size.height) + third(at.x, size.width));
+}
+
+RowStatistics Measure(const std::vector<StereoMatches>& pairs, cv::Size size) {
   RowStatistics statistics;
-  statistics.num_matches = static_cast<int>(matches.left.size());
-  std::vector<double> rows_px;
+  std::vector<double> all_px;
   std::array<std::vector<double>, 9> regions_px;
   int num_negative = 0;
   int num_signed = 0;
-  for (std::size_t i = 0; i < matches.left.size(); ++i) {
-    const cv::Point2f& left = matches.left[i];
-    const double row_px = std::abs(static_cast<double>(matches.right[i].y) - left.y);
-    const double disparity_px = static_cast<double>(left.x) - matches.right[i].x;
-    rows_px.push_back(row_px);
-    const auto third = [](float value, int length) {
-      return std::clamp(static_cast<int>(3 * value / static_cast<float>(length)), 0, 2);
-    };
-    regions_px[static_cast<std::size_t>(3 * third(left.y, size.height) + third(left.x, size.width))]
-        .push_back(row_px);
-    if (std::abs(disparity_px) > kNoSignPx) ++num_signed;
-    if (disparity_px < -kNoSignPx) ++num_negative;
+  for (const StereoMatches& matches : pairs) {
+    const std::vector<double> rows_px = AbsoluteRows(matches);
+    all_px.insert(all_px.end(), rows_px.begin(), rows_px.end());
+    if (static_cast<int>(rows_px.size()) >= kMinPairMatches)
+      statistics.pair_px.push_back(Quantile(rows_px, 0.5));
+    for (std::size_t i = 0; i < rows_px.size(); ++i)
+      regions_px[RegionOf(matches.left[i], size)].push_back(rows_px[i]);
+    for (const double disparity_px : matches.Disparities()) {
+      if (std::abs(disparity_px) > kNoSignPx) ++num_signed;
+      if (disparity_px < -kNoSignPx) ++num_negative;
+    }
   }
-  statistics.median_px = Quantile(rows_px, 0.5);
+  statistics.num_matches = static_cast<int>(all_px.size());
+  statistics.median_px = Quantile(all_px, 0.5);
   statistics.share_negative = num_signed > 0 ? static_cast<double>(num_negative) / num_signed : 0;
   for (std::size_t i = 0; i < regions_px.size(); ++i) {
     if (static_cast<int>(regions_px[i].size()) >= kMinRegionMatches)
@@ -64,10 +77,10 @@ RowStatistics Measure(const StereoMatches& matches, cv::Size size) {
 cv::Mat Same(const cv::Mat& image) { return image; }
 
 RowStatistics MeasureWith(const StereoRectifier& rectifier, const std::vector<RawPair>& pairs) {
-  const StereoMatches matches = MatchAll(
-      pairs, [&](const cv::Mat& image) { return rectifier.Left(image); },
-      [&](const cv::Mat& image) { return rectifier.Right(image); });
-  return Measure(matches, pairs.front().left.size());
+  return Measure(MatchAll(
+                     pairs, [&](const cv::Mat& image) { return rectifier.Left(image); },
+                     [&](const cv::Mat& image) { return rectifier.Right(image); }),
+                 pairs.front().left.size());
 }
 
 /// Another reading of the same file.
@@ -81,15 +94,25 @@ std::vector<Guess> Guesses(const StereoRig& rig) {
   std::vector<Guess> guesses;
   guesses.push_back(
       {rig, true, "left and right images are exchanged: give them the other way round"});
+  if (rig.are_images_rectified) return guesses;
+  if (rig.is_lens_assumed) {
+    Guess guess{rig, false, "the coefficients seem to be of cv::fisheye: --lens fisheye"};
+    guess.rig.left.lens = guess.rig.right.lens = LensModel::kFisheye;
+    guesses.push_back(guess);
+  }
   for (const double factor : {0.5, 2.0, 2.0 / 3, 1.5, 0.75, 4.0 / 3}) {
-    Guess guess{rig, false,
-                "the calibration seems to be one for images " + Brief(factor) +
-                    " times as large: --scale-calibration"};
+    // Taken for images of another size, then fitted to these.
     const auto [width, height] = std::make_pair(rig.left.width, rig.left.height);
-    guess.rig.left = Scaled(rig.left, 1 / factor);
-    guess.rig.right = Scaled(rig.right, 1 / factor);
-    guess.rig.left.width = guess.rig.right.width = width;
-    guess.rig.left.height = guess.rig.right.height = height;
+    const std::pair<int, int> calibrated = {static_cast<int>(std::lround(width * factor)),
+                                            static_cast<int>(std::lround(height * factor))};
+    Guess guess{rig, false,
+                "the calibration seems to be one for images " + TimesAsLarge(factor) + " (" +
+                    std::to_string(calibrated.first) + "x" + std::to_string(calibrated.second) +
+                    " px): --size and --scale-calibration"};
+    for (CameraIntrinsics* camera : {&guess.rig.left, &guess.rig.right}) {
+      std::tie(camera->width, camera->height) = calibrated;
+      *camera = Resized(*camera, {width, height});
+    }
     guesses.push_back(guess);
   }
   return guesses;
@@ -98,7 +121,7 @@ std::vector<Guess> Guesses(const StereoRig& rig) {
 /// What another reading of the file would be better than the one that was taken, or empty.
 std::string BetterReading(const StereoRig& rig, const std::vector<RawPair>& pairs,
                           const RigCheck& check) {
-  if (check.before.median_px < kGoodRowPx &&
+  if (!rig.are_images_rectified && check.before.median_px < kGoodRowPx &&
       check.before.median_px < kClearlyBetter * check.after.median_px) {
     return "as they are, rows agree to " + Brief(check.before.median_px) +
            " px: the images are rectified already: --rectified";
@@ -132,6 +155,31 @@ std::string WorstRegion(const RowStatistics& statistics) {
   return std::string(kNames[worst - statistics.region_px.begin()]) + " (" + Brief(*worst) + " px)";
 }
 
+/// "0.2 px in some pairs, 4 px in others" where the rows agree in some pairs only, which no
+/// calibration does; otherwise empty.
+std::string SomePairsOnly(const RowStatistics& statistics) {
+  constexpr std::size_t kMinPairs = 4;
+  if (statistics.pair_px.size() < kMinPairs) return "";
+  const double good_px = Quantile(statistics.pair_px, 0.1);
+  const double bad_px = Quantile(statistics.pair_px, 0.9);
+  if (good_px > kGoodRowPx || bad_px < std::max(kGoodRowPx, kClearlyWorse * good_px)) return "";
+  return Brief(good_px) + " px in some pairs, " + Brief(bad_px) + " px in others";
+}
+
+constexpr char kNotAtOneTime[] =
+    "left and right images were not all taken at one time, or a camera has moved";
+
+/// What else is wrong where no other reading of the file helps.
+std::string OtherCause(const StereoRig& rig, const RowStatistics& after) {
+  const std::string some_pairs = SomePairsOnly(after);
+  if (!some_pairs.empty()) return std::string(kNotAtOneTime) + " (" + some_pairs + ")";
+  if (rig.are_images_rectified) {
+    return "the file is for rectified images, these are not, or not by the same calibration";
+  }
+  return "the calibration is of another camera or lens, or left and right were not taken at one "
+         "time";
+}
+
 }  // namespace
 
 RigCheck MeasureRig(const StereoRectifier& rectifier, const std::vector<RawPair>& pairs) {
@@ -162,15 +210,17 @@ void JudgeRigCheck(const StereoRig& rig, const std::vector<RawPair>& pairs, cons
     findings->Note("rig.fits", where,
                    "the calibration fits: rows differ by " + Brief(after.median_px) +
                        " px (median), " + Brief(check.before.median_px) + " px before");
+    const std::string some_pairs = SomePairsOnly(after);
+    if (!some_pairs.empty())
+      findings->Warn("rig.times", where,
+                     "rows differ by " + some_pairs + ": " + std::string(kNotAtOneTime));
     return;
   }
   const std::string reading = BetterReading(rig, pairs, check);
   findings->Fail("rig.rows", where,
                  "after rectification the rows still differ by " + Brief(after.median_px) +
-                     " px (median), most at the " + WorstRegion(after) +
-                     (reading.empty() ? "; the calibration is of another camera or lens, or left "
-                                        "and right were not taken at one time"
-                                      : "; " + reading));
+                     " px (median), most at the " + WorstRegion(after) + "; " +
+                     (reading.empty() ? OtherCause(rig, after) : reading));
 }
 
 }  // namespace airdos

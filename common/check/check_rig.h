@@ -20,9 +20,10 @@ struct RawPair {
 /// How far the rows of matches lie apart, and on which side they are.
 struct RowStatistics {
   int num_matches = 0;
-  double median_px = 0;  ///< of |v_right - v_left|
-  double share_negative =
-      0;  ///< of matches with u_left < u_right: 1 where the images are exchanged
+  double median_px = 0;         ///< of |v_right - v_left|
+  std::vector<double> pair_px;  ///< the same of each pair with matches enough
+  /// Of the matches with a disparity: those with u_left < u_right; 1 where images are exchanged.
+  double share_negative = 0;
   /// Median of |v_right - v_left| in thirds of the left image, row by row from the top left; below
   /// 0 where there are too few matches.
   std::array<double, 9> region_px = {-1, -1, -1, -1, -1, -1, -1, -1, -1};
@@ -39,8 +40,9 @@ RigCheck MeasureRig(const StereoRectifier& rectifier, const std::vector<RawPair>
 
 /// Whether the calibration fits the images (rows agree to 1 px, disparities are positive), and
 /// where it does not, which other reading of the file would: images rectified already, left and
-/// right exchanged, calibrated at another resolution; or that left and right were not taken at one
-/// time. `pairs` must have the rig's size.
+/// right exchanged, calibrated at another resolution, a fisheye lens; or, where rows agree in some
+/// of the pairs only, that left and right were not taken at one time. Every pair must have the
+/// rig's size.
 void JudgeRigCheck(const StereoRig& rig, const std::vector<RawPair>& pairs, const RigCheck& check,
                    const std::string& where, FindingList* findings);
 

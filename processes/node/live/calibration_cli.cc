@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "common/calibration/camera_matrix.h"
 #include "common/util/error.h"
 #include "processes/node/live/program_cli.h"
 
@@ -27,11 +28,11 @@ std::pair<int, int> TwoNumbers(const std::string& option, const std::string& tex
 void CalibrationArguments::AddTo(const std::string& names, CLI::App* app) {
   app->add_option(names, paths_,
                   "calibration of an unrectified pair: one file (Kalibr, OpenCV, ORB-SLAM, KITTI, "
-                  "ZED, calib.json), "
-                  "or the left and the right camera's (ROS, EuRoC)")
+                  "ZED, calib.json), or the left and the right camera's (ROS, EuRoC)")
       ->type_name("FILE")
       ->expected(1, 2);
-  app->add_option("--size", size_, "the images' size, where neither the file nor images say it")
+  app->add_option("--size", size_,
+                  "size of the images that were calibrated, where the file does not say it")
       ->type_name("WIDTHxHEIGHT");
   app->add_flag("--swap", swap_, "the file's first camera is the right one");
   app->add_flag("--rectified", rectified_, "the images were rectified with this file already");
@@ -55,13 +56,8 @@ StereoRig CalibrationArguments::Read(std::pair<int, int> image_size) const {
   CalibrationOptions options;
   options.format.image_size = image_size;
   if (!size_.empty()) {
-    const std::pair<int, int> said = TwoNumbers("--size", size_, 'x');
-    if (image_size.first != 0 && image_size != said) {
-      throw InputError("--size: '" + size_ + "', but the images have " +
-                       std::to_string(image_size.first) + "x" + std::to_string(image_size.second) +
-                       " px");
-    }
-    options.format.image_size = said;
+    const auto [width, height] = TwoNumbers("--size", size_, 'x');
+    options.format.calibrated_size = ToImageSize(width, height, "--size");
   }
   if (!lens_.empty())
     options.format.lens = lens_ == "fisheye" ? LensModel::kFisheye : LensModel::kRadialTangential;

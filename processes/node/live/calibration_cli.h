@@ -21,8 +21,7 @@ class CalibrationArguments {
 
   bool is_given() const { return !paths_.empty(); }
   const std::vector<std::string>& paths() const { return paths_; }
-  /// For images of that size (px); {0, 0} = not known, then --size or the file says it. Throws
-  /// InputError, also where --size says another size than the images have.
+  /// For images of that size (px); {0, 0} = not known. Throws InputError as ReadStereoRig() does.
   StereoRig Read(std::pair<int, int> image_size = {0, 0}) const;
   RectifierOptions rectifier_options() const { return rectifier_; }
 

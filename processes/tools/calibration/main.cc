@@ -1,22 +1,19 @@
 // airdos-calibration: what a calibration file says, whether it fits images, and the same in another
 // format.
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "common/calibration/rig_writer.h"
-#include "common/dataset/image_file.h"
-#include "common/dataset/image_names.h"
-#include "common/dataset/sequence_files.h"
+#include "common/check/check_shift.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
 #include "common/util/output_files.h"
 #include "processes/node/live/calibration_cli.h"
 #include "processes/node/live/program_cli.h"
+#include "processes/tools/calibration/image_folders.h"
 #include "processes/tools/calibration/rig_text.h"
 
 namespace airdos {
@@ -58,41 +55,21 @@ int Convert(const Arguments& arguments) {
   return 0;
 }
 
-/// Pairs spread over the two folders, grey.
-std::vector<RawPair> ReadPairs(const Arguments& arguments) {
-  const ImageNames left = ListImages(arguments.images[0]);
-  const ImageNames right = ListImages(arguments.images[1]);
-  CheckPairs(left, right);
-  const auto read = [](const std::string& folder, const std::string& file) {
-    const std::string path = (std::filesystem::path(folder) / file).string();
-    return DecodePicture(ReadImageFile(path), path, PictureColor::kGrey, {}).pixels;
-  };
-  const std::size_t count = left.files.size();
-  const std::size_t num_pairs = std::min(count, static_cast<std::size_t>(arguments.num_pairs));
-  std::vector<RawPair> pairs;
-  for (std::size_t i = 0; i < num_pairs; ++i) {
-    const std::size_t index = i * count / num_pairs;
-    pairs.push_back({read(left.folder, left.files[index]), read(right.folder, right.files[index])});
-    if (pairs.back().left.size() != pairs.front().left.size() ||
-        pairs.back().right.size() != pairs.front().left.size()) {
-      throw InputError(left.folder + "/" + left.files[index] +
-                       ": this pair has another size than the first one");
-    }
-  }
-  return pairs;
-}
-
 int Check(const Arguments& arguments) {
-  const std::vector<RawPair> pairs = ReadPairs(arguments);
+  const ImageFolders folders(arguments.images[0], arguments.images[1]);
+  const std::vector<RawPair> pairs = folders.Sample(static_cast<std::size_t>(arguments.num_pairs));
   const StereoRig rig =
       arguments.calibration.Read({pairs.front().left.cols, pairs.front().left.rows});
   const StereoRectifier rectifier(rig, arguments.calibration.rectifier_options());
   std::cout << RigText(rig, rectifier);
   const RigCheck check = MeasureRig(rectifier, pairs);
   std::cout << RigCheckText(check);
+  const std::string& file = arguments.calibration.paths().front();
   FindingList findings;
-  JudgeRigCheck(rig, pairs, check, arguments.calibration.paths().front(), &findings);
-  findings.Print(arguments.calibration.paths().front(), &std::cout);
+  JudgeRigCheck(rig, pairs, check, file, &findings);
+  constexpr std::size_t kNumPlaces = 8;
+  CheckShift(RectifiedFolders(folders, rectifier), kNumPlaces, &findings);
+  findings.Print(file, &std::cout);
   return findings.has_errors() ? 1 : 0;
 }
 
@@ -107,8 +84,7 @@ CLI::App* AddCommand(const std::string& name, const std::string& text, Arguments
 int Run(int argc, char** argv) {
   CLI::App app(
       "What a stereo calibration says, whether it fits images, and the same in another format. "
-      "Exit code 0: it can be used; "
-      "1: it does not fit the images; 2: it cannot be read.",
+      "Exit code 0: it can be used; 1: it does not fit the images; 2: it cannot be read.",
       "airdos-calibration");
   app.require_subcommand(1);
   app.fallthrough();

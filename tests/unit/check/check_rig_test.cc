@@ -98,13 +98,13 @@ TEST_F(CheckRigTest, ExchangedImagesAreNamed) {
 TEST_F(CheckRigTest, ACalibrationOfAnotherResolutionIsNamed) {
   StereoRig doubled = MakeRig();
   for (CameraIntrinsics* camera : {&doubled.left, &doubled.right}) {
-    *camera = Scaled(*camera, 0.75);
+    *camera = Resized(*camera, {360, 270});
     camera->width = 480;
     camera->height = 360;
   }
   const std::string text = Judge(doubled, pairs_);
   ExpectHas(text, "error rig.rows");
-  ExpectHas(text, "0.75 times as large");
+  ExpectHas(text, "0.75 times as large (360x270 px): --size and --scale-calibration");
 }
 
 TEST_F(CheckRigTest, RectifiedImagesAreNamed) {
