@@ -1,3 +1,5 @@
+#include <tuple>
+
 #include "common/calibration/calibration_yaml.h"
 #include "common/calibration/camera_matrix.h"
 #include "common/calibration/rig_formats.h"
