@@ -80,8 +80,8 @@ bool SetSize(const std::string& where, const FormatOptions& options, StereoRig* 
     return said.first == 0;
   }
   if (said.first != 0 && said != SizeOf(rig->left)) {
-    throw InputError("--size: says " + SizeText(said) + ", but " + where + " is for images of " +
-                     SizeText(SizeOf(rig->left)));
+    throw InputError(where + ": is for images of " + SizeText(SizeOf(rig->left)) +
+                     ", but --size says " + SizeText(said));
   }
   return false;
 }

@@ -16,7 +16,8 @@ constexpr int kMaxCorners = 1500;
 constexpr int kMinMatches = 30;  // fewer tell nothing
 constexpr int kMinRegionMatches = 8;
 constexpr int kMinPairMatches = 15;
-constexpr double kGoodRowPx = 1;         // good calibrations come to 0.1 to 0.4
+constexpr double kFairRowPx = 0.5;  // good calibrations come to 0.1 to 0.4
+constexpr double kMaxRowPx = 1;
 constexpr double kClearlyBetter = 0.5;   // of the row error
 constexpr double kClearlyWorse = 3;      // than in other pairs
 constexpr double kExchangedShare = 0.8;  // of the disparities are negative
@@ -121,13 +122,13 @@ std::vector<Guess> Guesses(const StereoRig& rig) {
 /// What another reading of the file would be better than the one that was taken, or empty.
 std::string BetterReading(const StereoRig& rig, const std::vector<RawPair>& pairs,
                           const RigCheck& check) {
-  if (!rig.are_images_rectified && check.before.median_px < kGoodRowPx &&
+  if (!rig.are_images_rectified && check.before.median_px < kMaxRowPx &&
       check.before.median_px < kClearlyBetter * check.after.median_px) {
     return "as they are, rows agree to " + Brief(check.before.median_px) +
            " px: the images are rectified already: --rectified";
   }
   std::string best;
-  double best_px = std::min(kGoodRowPx, kClearlyBetter * check.after.median_px);
+  double best_px = std::min(kMaxRowPx, kClearlyBetter * check.after.median_px);
   for (const Guess& guess : Guesses(rig)) {
     std::vector<RawPair> images = pairs;
     if (guess.exchanges_images) {
@@ -162,7 +163,7 @@ std::string SomePairsOnly(const RowStatistics& statistics) {
   if (statistics.pair_px.size() < kMinPairs) return "";
   const double good_px = Quantile(statistics.pair_px, 0.1);
   const double bad_px = Quantile(statistics.pair_px, 0.9);
-  if (good_px > kGoodRowPx || bad_px < std::max(kGoodRowPx, kClearlyWorse * good_px)) return "";
+  if (good_px > kMaxRowPx || bad_px < std::max(kMaxRowPx, kClearlyWorse * good_px)) return "";
   return Brief(good_px) + " px in some pairs, " + Brief(bad_px) + " px in others";
 }
 
@@ -206,21 +207,23 @@ void JudgeRigCheck(const StereoRig& rig, const std::vector<RawPair>& pairs, cons
                        " of the disparities are negative: left and right images are exchanged");
     return;
   }
-  if (after.median_px <= kGoodRowPx) {
+  if (after.median_px <= kFairRowPx) {
     findings->Note("rig.fits", where,
                    "the calibration fits: rows differ by " + Brief(after.median_px) +
                        " px (median), " + Brief(check.before.median_px) + " px before");
     const std::string some_pairs = SomePairsOnly(after);
-    if (!some_pairs.empty())
+    if (!some_pairs.empty()) {
       findings->Warn("rig.times", where,
                      "rows differ by " + some_pairs + ": " + std::string(kNotAtOneTime));
+    }
     return;
   }
   const std::string reading = BetterReading(rig, pairs, check);
-  findings->Fail("rig.rows", where,
-                 "after rectification the rows still differ by " + Brief(after.median_px) +
-                     " px (median), most at the " + WorstRegion(after) + "; " +
-                     (reading.empty() ? OtherCause(rig, after) : reading));
+  findings->Add(after.median_px > kMaxRowPx ? Severity::kError : Severity::kWarning, "rig.rows",
+                where,
+                "after rectification the rows still differ by " + Brief(after.median_px) +
+                    " px (median), most at the " + WorstRegion(after) + "; " +
+                    (reading.empty() ? OtherCause(rig, after) : reading));
 }
 
 }  // namespace airdos

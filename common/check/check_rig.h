@@ -38,11 +38,11 @@ struct RigCheck {
 /// Matches corners of all pairs (MatchStereo()) before and after rectification.
 RigCheck MeasureRig(const StereoRectifier& rectifier, const std::vector<RawPair>& pairs);
 
-/// Whether the calibration fits the images (rows agree to 1 px, disparities are positive), and
-/// where it does not, which other reading of the file would: images rectified already, left and
-/// right exchanged, calibrated at another resolution, a fisheye lens; or, where rows agree in some
-/// of the pairs only, that left and right were not taken at one time. Every pair must have the
-/// rig's size.
+/// Whether the calibration fits the images: rows agree to 0.5 px (above 1 px is an error),
+/// disparities are positive. Where it does not, which other reading of the file would: images
+/// rectified already, left and right exchanged, calibrated at another resolution, a fisheye lens;
+/// or, where rows agree in some of the pairs only, that left and right were not taken at one time.
+/// Every pair must have the rig's size.
 void JudgeRigCheck(const StereoRig& rig, const std::vector<RawPair>& pairs, const RigCheck& check,
                    const std::string& where, FindingList* findings);
 

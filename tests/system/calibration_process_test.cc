@@ -93,7 +93,7 @@ TEST_F(CalibrationProcessTest, WhatDoesNotFitIsOneLine) {
   ExpectRefused({"show", written({-0.25, 0, 0})}, "say --swap");
   EXPECT_EQ(Run({"show", folder_.PathOf("a.yaml"), "--swap"}).exit_code, 0);
   ExpectRefused({"show", written({0.02, 0.25, 0})}, "one above the other");
-  ExpectRefused({"show", written({0.25, 0, 0}), "--size", "640x384"}, "--size: says 640x384 px");
+  ExpectRefused({"show", written({0.25, 0, 0}), "--size", "640x384"}, "but --size says 640x384 px");
   ExpectRefused({"show", folder_.PathOf("a.yaml"), "--size", "640"}, "--size: '640' must be");
   ExpectRefused({"show", folder_.PathOf("a.yaml"), "--size", "0x0"}, "no size of images");
   ExpectRefused({"show", folder_.Write("b.yaml", "a: 1\n")}, "is no calibration file");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <opencv2/calib3d.hpp>
 #include <sstream>
 
@@ -221,6 +222,29 @@ TEST_F(RigFormats, RosPair) {
   EXPECT_NEAR(read.rectified->fx_px, r.P1.at<double>(0, 0), 1e-9);
   EXPECT_NEAR(read.rectified->cy_px, r.P1.at<double>(1, 2), 1e-9);
   EXPECT_NEAR(read.rectified->baseline_m, rig.T_L_R.translation.norm(), 1e-9);
+}
+
+TEST_F(RigFormats, RosMessagesAsTheyArePrinted) {
+  const StereoRig rig = MakeRig(LensModel::kFisheye);
+  const Rectification r = Rectify(MakeRig(LensModel::kRadialTangential));
+  const auto message = [](const CameraIntrinsics& c, const cv::Mat& R, const cv::Mat& P,
+                          bool is_ros2) {
+    std::string text =
+        "header:\n  seq: 7\nheight: 480\nwidth: 640\ndistortion_model: equidistant\n";
+    for (const auto& [key, list] : {std::make_pair("D", List(c.distortion)),
+                                    {"K", List(K(c))},
+                                    {"R", MatList(R)},
+                                    {"P", MatList(P)}}) {
+      text += std::string(1, static_cast<char>(is_ros2 ? std::tolower(key[0]) : key[0])) + ": " +
+              list + "\n";
+    }
+    return text + "binning_x: 0\n---\n";
+  };
+  for (const bool is_ros2 : {false, true}) {
+    ExpectSame(Read({Write("left.yaml", message(rig.left, r.R1, r.P1, is_ros2)),
+                     Write("right.yaml", message(rig.right, r.R2, r.P2, is_ros2))}),
+               rig);
+  }
 }
 
 TEST_F(RigFormats, OpencvInOneFileAndInTwo) {

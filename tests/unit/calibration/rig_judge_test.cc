@@ -84,6 +84,7 @@ TEST(RigJudge, EachWrongRigIsRefusedWithItsReason) {
        "right camera: 3 distortion coefficients"},
       {[](StereoRig* r, auto*) { r->left.distortion[1] = 1e9; },
        "a distortion coefficient of 1e+09"},
+      {[](StereoRig* r, auto*) { r->left.width = r->right.width = 30000; }, "are too large"},
       {[](StereoRig* r, auto*) { r->right.width = 320; },
        "differ in size (640x480 px and 320x480 px)"},
       {[](StereoRig* r, auto*) { r->right.lens = LensModel::kFisheye; }, "the lens models differ"},
@@ -91,6 +92,10 @@ TEST(RigJudge, EachWrongRigIsRefusedWithItsReason) {
          r->left.width = r->left.height = r->right.width = r->right.height = 0;
        },
        "--size"},
+      {[](StereoRig*, CalibrationOptions* o) {
+         o->format.calibrated_size = {320, 240};
+       },
+       "is for images of 640x480 px"},
       {[](StereoRig*, CalibrationOptions* o) {
          o->format.image_size = {320, 240};
        },
@@ -157,6 +162,96 @@ TEST(RigJudge, ScaledImagesHaveScaledCameras) {
   EXPECT_DOUBLE_EQ(rig.right.cy_px, 487);  // (243.25 + 0.5) * 2 - 0.5
   EXPECT_EQ(rig.left.distortion, MakeRig().left.distortion);
   ASSERT_EQ(rig.notes.size(), 1u);
+}
+
+// Sides are rounded to whole px.
+TEST(RigJudge, EachSideIsScaledByItself) {
+  StereoRig rig = MakeRig();
+  rig.rectified = StereoCamera{600, 450, 450, 460, 300, 220, 0.112};
+  CalibrationOptions options;
+  options.format.image_size = {320, 241};
+  options.scale = true;
+  JudgeRig("x.yaml", options, &rig);
+  EXPECT_EQ(rig.right.height, 241);
+  EXPECT_DOUBLE_EQ(rig.left.fx_px, 461.25 / 2);
+  EXPECT_DOUBLE_EQ(rig.left.fy_px, 458.5 * 241 / 480);
+  EXPECT_EQ(rig.rectified->width, 300);
+  EXPECT_EQ(rig.rectified->height, 226);  // 450 * 241 / 480
+  EXPECT_DOUBLE_EQ(rig.rectified->fx_px, 225);
+  EXPECT_EQ(rig.rectified->baseline_m, 0.112);
+}
+
+StereoRig WithoutSize() {
+  StereoRig rig = MakeRig();
+  rig.left.width = rig.left.height = rig.right.width = rig.right.height = 0;
+  return rig;
+}
+
+TEST(RigJudge, ASizeThatTheFileLeavesOpenIsTheImagesOrTheUsersWord) {
+  StereoRig rig = WithoutSize();
+  rig.rectified = StereoCamera{0, 0, 450, 450, 320, 240, 0.112};
+  CalibrationOptions options;
+  options.format.image_size = {640, 480};
+  JudgeRig("x.yaml", options, &rig);
+  EXPECT_EQ(rig.left.width, 640);
+  EXPECT_EQ(rig.right.height, 480);
+  EXPECT_EQ(rig.rectified->width, 640);
+  EXPECT_TRUE(rig.notes.empty());
+
+  rig = WithoutSize();
+  options.format.image_size = {1280, 960};
+  options.format.calibrated_size = {640, 480};
+  options.scale = true;
+  JudgeRig("x.yaml", options, &rig);
+  EXPECT_DOUBLE_EQ(rig.left.fx_px, 922.5);
+  EXPECT_EQ(rig.left.width, 1280);
+}
+
+TEST(RigJudge, IntrinsicsOfAnotherResolutionAreKnownByTheirPrincipalPoints) {
+  const std::string complaint = Complaint([](StereoRig* r, CalibrationOptions* o) {
+    *r = WithoutSize();
+    o->format.image_size = {1280, 960};
+  });
+  EXPECT_NE(complaint.find("centres of images half as large as 1280x960 px"), std::string::npos)
+      << complaint;
+  EXPECT_NE(complaint.find("--size"), std::string::npos) << complaint;
+  // One camera alone may be badly centred.
+  EXPECT_EQ(Complaint([](StereoRig* r, CalibrationOptions* o) {
+              *r = WithoutSize();
+              r->right.cx_px = 640;
+              r->right.cy_px = 480;
+              o->format.image_size = {1280, 960};
+            }),
+            "");
+  // Where the file says the size, it is believed, and the doubt is said.
+  StereoRig rig = MakeRig();
+  for (CameraIntrinsics* camera : {&rig.left, &rig.right}) {
+    camera->width = 1280;
+    camera->height = 960;
+  }
+  JudgeRig("x.yaml", {}, &rig);
+  ASSERT_EQ(rig.notes.size(), 1u);
+  EXPECT_NE(rig.notes[0].find("half as large"), std::string::npos);
+}
+
+TEST(RigJudge, ALongBaselineIsSaid) {
+  StereoRig rig = MakeRig();
+  rig.T_L_R.translation *= 10;  // 1.12 m
+  JudgeRig("x.yaml", {}, &rig);
+  ASSERT_EQ(rig.notes.size(), 1u);
+  EXPECT_NE(rig.notes[0].find("1.121 m is long"), std::string::npos) << rig.notes[0];
+}
+
+TEST(RigJudge, ImagesRectifiedWithTheFileTakeItsPair) {
+  StereoRig rig = MakeRig();
+  rig.rectified = StereoCamera{640, 480, 450, 450, 320, 240, 0.112};
+  CalibrationOptions options;
+  options.are_images_rectified = true;
+  JudgeRig("x.yaml", options, &rig);
+  EXPECT_TRUE(rig.are_images_rectified);
+  options.swap = true;
+  StereoRig swapped = rig;
+  EXPECT_THROW(JudgeRig("x.yaml", options, &swapped), InputError);
 }
 
 /// A point in the left camera's axes, in px of either original image.

@@ -26,7 +26,7 @@ StereoRig MakeRig() {
 
 /// What the rig's cameras see of a world whose rectified images are known: each raw pixel shows
 /// what lies where it is rectified to.
-RawPair Record(const StereoRig& rig, double offset_m) {
+RawPair Record(const StereoRig& rig, double offset_m, double lower_m = 0) {
   const StereoRectifier rectifier(rig);
   StereoCamera wide = rectifier.camera();  // raw images see beyond the rectified ones
   const int margin_px = 160;
@@ -36,6 +36,7 @@ RawPair Record(const StereoRig& rig, double offset_m) {
   wide.cy_px += margin_px;
   Se3 T_W_C;
   T_W_C.translation.x() = offset_m;
+  T_W_C.translation.y() = lower_m;
   const StereoPair ideal = RenderedScene(7).Render(wide, T_W_C);
   const auto take = [&](const cv::Mat& image, bool is_left) {
     cv::Mat x(360, 480, CV_32FC1);
@@ -115,6 +116,37 @@ TEST_F(CheckRigTest, RectifiedImagesAreNamed) {
   const std::string text = Judge(MakeRig(), rectified);
   ExpectHas(text, "error rig.rows");
   ExpectHas(text, "rectified already");
+}
+
+// No calibration is right in some pairs and wrong in others.
+TEST_F(CheckRigTest, PairsOfWhichSomeWereNotTakenAtOneTimeAreNamed) {
+  const RawPair higher = Record(MakeRig(), 0, 0.12);
+  const RawPair late = {pairs_[0].left, higher.right};
+  const std::string some =
+      Judge(MakeRig(), {pairs_[0], late, pairs_[1], pairs_[0], late, pairs_[1], pairs_[0]});
+  ExpectHas(some, "note rig.fits");
+  ExpectHas(some, "warning rig.times");
+  const std::string most = Judge(MakeRig(), {late, pairs_[0], late, late, pairs_[1], late});
+  ExpectHas(most, "error rig.rows");
+  ExpectHas(most, "not all taken at one time");
+}
+
+TEST_F(CheckRigTest, AFisheyeLensThatWasTakenForAnotherIsNamed) {
+  StereoRig rig = MakeRig();
+  rig.left.lens = rig.right.lens = LensModel::kFisheye;
+  rig.left.distortion = {-0.0137, 0.0207, -0.0128, 0.0025};
+  rig.right.distortion = {-0.0085, 0.0114, -0.007, 0.0015};
+  const std::vector<RawPair> pairs = {Record(rig, 0)};
+  rig.left.lens = rig.right.lens = LensModel::kRadialTangential;
+  rig.is_lens_assumed = true;
+  ExpectHas(Judge(rig, pairs), "--lens fisheye");
+}
+
+TEST_F(CheckRigTest, AFileOfRectifiedImagesForOthersIsNamed) {
+  StereoRig rig = MakeRig();
+  rig.rectified = StereoRectifier(rig).camera();
+  rig.are_images_rectified = true;
+  ExpectHas(Judge(rig, pairs_), "the file is for rectified images, these are not");
 }
 
 TEST_F(CheckRigTest, ImagesOfDifferentTimesFitNothing) {
