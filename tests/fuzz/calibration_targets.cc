@@ -38,7 +38,8 @@ void RunCalibration(const std::uint8_t* data, std::size_t size) {
     rectifier_options.alpha = (flags & 64) != 0 ? 1 : 0;
     const StereoRectifier rectifier(rig, rectifier_options);
     FuzzCheck(rectifier.camera().IsValid(), "a rectified pair that is none");
-    const cv::Mat image(rectifier.camera().height, rectifier.camera().width, CV_8UC1);
+    const cv::Mat image(rectifier.camera().height, rectifier.camera().width, CV_8UC1,
+                        cv::Scalar(9));
     rectifier.Left(image);
     rectifier.RectifyRight({1, 2});
     for (const std::string& format : WrittenFormats()) {

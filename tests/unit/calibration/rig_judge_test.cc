@@ -123,7 +123,9 @@ TEST(RigJudge, EachWrongRigIsRefusedWithItsReason) {
 TEST(RigJudge, MillimetresAreConvertedAndSaid) {
   StereoRig rig = MakeRig();
   rig.T_L_R.translation *= 1000;
+  rig.rectified = StereoCamera{640, 480, 450, 450, 320, 240, 112};
   JudgeRig("x.yaml", {}, &rig);
+  EXPECT_DOUBLE_EQ(rig.rectified->baseline_m, 0.112);
   EXPECT_LT((rig.T_L_R.translation - MakeRig().T_L_R.translation).norm(), 1e-12);
   ASSERT_EQ(rig.notes.size(), 1u);
   EXPECT_NE(rig.notes[0].find("in mm"), std::string::npos);

@@ -88,6 +88,22 @@ TEST_F(CheckRigTest, TheRightCalibrationFits) {
   ExpectHas(Judge(MakeRig(), pairs_), "note rig.fits");
 }
 
+// The right image's top right third is two rows lower than it should be.
+TEST_F(CheckRigTest, WhereRowsDifferIsMeasuredAndNamed) {
+  StereoRig rig = MakeRig();
+  rig.rectified = StereoCamera{480, 360, 330, 330, 240, 180, 0.2};
+  rig.are_images_rectified = true;
+  const RawPair good = {NoisePicture(480, 360, 5), NoisePicture(480, 360, 5, 4)};
+  RawPair pair = {good.left, good.right.clone()};
+  const cv::Rect corner(310, 0, 170, 125);
+  NoisePicture(480, 360, 5, 4, -2)(corner).copyTo(pair.right(corner));
+  const RigCheck check = MeasureRig(StereoRectifier(rig), {pair});
+  for (std::size_t region = 0; region < 9; ++region)
+    EXPECT_NEAR(check.after.region_px[region], region == 2 ? 2 : 0, 0.1) << region;
+  ASSERT_EQ(check.after.pair_px.size(), 1u);
+  EXPECT_LT(check.after.pair_px[0], 0.1);
+}
+
 TEST_F(CheckRigTest, ExchangedImagesAreNamed) {
   std::vector<RawPair> exchanged = pairs_;
   for (RawPair& pair : exchanged) std::swap(pair.left, pair.right);
