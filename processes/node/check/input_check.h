@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/check/check_input.h"
-#include "processes/node/live/command_line.h"
+#include "processes/node/command_line.h"
 
 namespace airdos {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "processes/node/live/command_line.h"
+#include "processes/node/command_line.h"
 
 namespace airdos {
 

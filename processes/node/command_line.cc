@@ -1,4 +1,4 @@
-#include "processes/node/live/command_line.h"
+#include "processes/node/command_line.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

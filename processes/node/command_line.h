@@ -1,5 +1,5 @@
-#ifndef AIRDOS_PROCESSES_NODE_LIVE_COMMAND_LINE_H_
-#define AIRDOS_PROCESSES_NODE_LIVE_COMMAND_LINE_H_
+#ifndef AIRDOS_PROCESSES_NODE_COMMAND_LINE_H_
+#define AIRDOS_PROCESSES_NODE_COMMAND_LINE_H_
 
 #include <functional>
 #include <memory>
@@ -88,4 +88,4 @@ class CommandLine {
 
 }  // namespace airdos
 
-#endif  // AIRDOS_PROCESSES_NODE_LIVE_COMMAND_LINE_H_
+#endif  // AIRDOS_PROCESSES_NODE_COMMAND_LINE_H_
