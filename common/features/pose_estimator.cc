@@ -5,6 +5,8 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
+#include "common/geometry/mahalanobis.h"
+
 namespace airdos {
 namespace {
 
@@ -132,7 +134,7 @@ void GateByPrior(const Knowledge& known, std::vector<bool>* is_possible) {
     const Eigen::Matrix3d S =
         residual.jacobian * known.prior->covariance * residual.jacobian.transpose() +
         Eigen::Matrix3d::Identity();
-    (*is_possible)[i] = residual.value.dot(S.ldlt().solve(residual.value)) <= kMaxChi2;
+    (*is_possible)[i] = SquaredMahalanobis(residual.value, S) <= kMaxChi2;
   }
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "common/geometry/mahalanobis.h"
+
 namespace airdos {
 namespace {
 
@@ -60,7 +62,7 @@ std::optional<PeopleFilter::Match> PeopleFilter::MatchJoints(
     const auto J = PointJacobian(R_W_C, joint.p_C);
     const Eigen::Matrix3d S =
         person.covariance.block<3, 3>(row, row) + measured_W + J * pose_covariance * J.transpose();
-    if (!(residual_W.dot(S.ldlt().solve(residual_W)) <= max_error2)) continue;
+    if (!(SquaredMahalanobis(residual_W, S) <= max_error2)) continue;
     match.places.push_back(*place);
     match.p_C.push_back(joint.p_C);
     residuals.push_back(residual_W);
@@ -142,7 +144,7 @@ void PeopleFilter::LearnAcceleration(const Match& match, const Matrix6d& pose_co
                             match.jacobian * pose_covariance * match.jacobian.transpose();
   const Eigen::Matrix3d expected = mean * S * mean.transpose();
   const Eigen::Vector3d error = mean * match.residual_W;
-  const double ratio = error.dot(expected.ldlt().solve(error)) / 3;
+  const double ratio = SquaredMahalanobis(error, expected) / 3;
   if (!std::isfinite(ratio)) return;
   // Robust: one bad frame counts at most three times the expected variance.
   const double factor = 1 + kAccelerationRate * (std::min(ratio, 3.0) - 1);

@@ -1,7 +1,6 @@
 #ifndef AIRDOS_PROCESSES_STEREO_PLAYER_PLAYER_OPTIONS_H_
 #define AIRDOS_PROCESSES_STEREO_PLAYER_PLAYER_OPTIONS_H_
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -41,7 +40,7 @@ OptionTable TableOf(PlayerOptions* options);
 /// The command line, and where it says nothing the configuration file.
 class PlayerArguments {
  public:
-  explicit PlayerArguments(CLI::App* app);
+  explicit PlayerArguments(CommandLine* app);
   /// After parsing. Throws InputError.
   PlayerOptions Resolve() const;
   const CommonArguments& common() const { return common_; }

@@ -1,6 +1,5 @@
 #include "common/optimization/window/track_noise.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -10,6 +9,8 @@
 #include <optional>
 #include <set>
 #include <vector>
+
+#include "common/geometry/mahalanobis.h"
 
 namespace airdos {
 namespace {
@@ -72,8 +73,7 @@ Eigen::Matrix3d TurnBetween(const std::vector<Eigen::Vector3d>& before,
 }
 
 double LogDensity(const Eigen::Vector3d& error, const Eigen::Matrix3d& S, double largest_chi2) {
-  const Eigen::LDLT<Eigen::Matrix3d> ldlt(S);
-  const double chi2 = std::min(error.dot(ldlt.solve(error)), largest_chi2);
+  const double chi2 = std::min(SquaredMahalanobis(error, S), largest_chi2);
   return -0.5 * (chi2 + std::log(std::max(S.determinant(), 1e-60)));
 }
 
@@ -299,7 +299,7 @@ std::set<int> FindTrackBreaks(const TrackBreakOptions& options, const BundleProb
       filter.Predict(step_s, options.acceleration_m_s2 * std::sqrt(usual_step_s / step_s), 0);
       const Eigen::Vector3d innovation = filter.Innovation(centres[i]);
       const Eigen::Matrix3d S = filter.InnovationCovariance(centres[i]);
-      if (innovation.dot(S.ldlt().solve(innovation)) <= options.largest_chi2) {
+      if (SquaredMahalanobis(innovation, S) <= options.largest_chi2) {
         filter.Update(centres[i]);
         step_before_s = step_s;
         continue;

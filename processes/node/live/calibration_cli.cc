@@ -4,7 +4,6 @@
 
 #include "common/calibration/camera_matrix.h"
 #include "common/util/error.h"
-#include "processes/node/live/program_cli.h"
 
 namespace airdos {
 namespace {
@@ -25,31 +24,33 @@ std::pair<int, int> TwoNumbers(const std::string& option, const std::string& tex
 
 }  // namespace
 
-void CalibrationArguments::AddTo(const std::string& names, CLI::App* app) {
-  app->add_option(names, paths_,
-                  "calibration of an unrectified pair: one file (Kalibr, OpenCV, ORB-SLAM, KITTI, "
-                  "ZED, calib.json), or the left and the right camera's (ROS, EuRoC)")
-      ->type_name("FILE")
-      ->expected(1, 2);
-  app->add_option("--size", size_,
-                  "size of the images that were calibrated, where the file does not say it")
-      ->type_name("WIDTHxHEIGHT");
-  app->add_flag("--swap", swap_, "the file's first camera is the right one");
-  app->add_flag("--rectified", rectified_, "the images were rectified with this file already");
-  app->add_flag("--scale-calibration", scale_,
+CommandOption CalibrationArguments::AddTo(const std::string& names, CommandLine* line) {
+  const CommandOption files =
+      line->Add(names, &paths_,
+                "calibration of an unrectified pair: one file (Kalibr, OpenCV, ORB-SLAM, KITTI, "
+                "ZED, calib.json), or the left and the right camera's (ROS, EuRoC)")
+          .ShownAs("FILE")
+          .Words(1, 2);
+  line->Add("--size", &size_,
+            "size of the images that were calibrated, where the file does not say it")
+      .ShownAs("WIDTHxHEIGHT");
+  line->AddFlag("--swap", &swap_, "the file's first camera is the right one");
+  line->AddFlag("--rectified", &rectified_, "the images were rectified with this file already");
+  line->AddFlag("--scale-calibration", &scale_,
                 "the images are larger or smaller copies of those that were calibrated");
-  app->add_option("--baseline-unit", baseline_unit_,
-                  "unit of the file's translations, where their size does not tell")
-      ->check(OneOf({"m", "cm", "mm"}));
-  app->add_option("--lens", lens_, "lens model of an OpenCV file with four coefficients")
-      ->check(OneOf({"radtan", "fisheye"}));
-  app->add_option("--kitti-cameras", kitti_cameras_, "which two cameras of a KITTI file")
-      ->type_name("LEFT,RIGHT")
-      ->capture_default_str();
-  app->add_option("--alpha", rectifier_.alpha,
-                  "0: only what both images see; 1: all pixels are kept, with black borders")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
+  line->Add("--baseline-unit", &baseline_unit_,
+            "unit of the file's translations, where their size does not tell")
+      .OneOf({"m", "cm", "mm"});
+  line->Add("--lens", &lens_, "lens model of an OpenCV file with four coefficients")
+      .OneOf({"radtan", "fisheye"});
+  line->Add("--kitti-cameras", &kitti_cameras_, "which two cameras of a KITTI file")
+      .ShownAs("LEFT,RIGHT")
+      .ShowDefault();
+  line->Add("--alpha", &rectifier_.alpha,
+            "0: only what both images see; 1: all pixels are kept, with black borders")
+      .Within(0.0, 1.0)
+      .ShowDefault();
+  return files;
 }
 
 StereoRig CalibrationArguments::Read(std::pair<int, int> image_size) const {

@@ -1,13 +1,13 @@
 #ifndef AIRDOS_PROCESSES_NODE_LIVE_CALIBRATION_CLI_H_
 #define AIRDOS_PROCESSES_NODE_LIVE_CALIBRATION_CLI_H_
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/calibration/calibration_file.h"
 #include "common/calibration/stereo_rectifier.h"
+#include "processes/node/command_line.h"
 
 namespace airdos {
 
@@ -15,9 +15,9 @@ namespace airdos {
 /// have to be said about it.
 class CalibrationArguments {
  public:
-  /// Adds the options; `names` is that of the files' ("--calibration", or "FILE" where they are
-  /// arguments).
-  void AddTo(const std::string& names, CLI::App* app);
+  /// Adds the options, and returns that of the files, called `names` ("--calibration", or "INPUT"
+  /// where they are arguments).
+  CommandOption AddTo(const std::string& names, CommandLine* line);
 
   bool is_given() const { return !paths_.empty(); }
   const std::vector<std::string>& paths() const { return paths_; }

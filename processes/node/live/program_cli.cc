@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -135,34 +136,10 @@ int WithOutputChecked(const CLI::App& app, int code) {
 
 }  // namespace
 
-CLI::Option* AddFile(const std::string& names, std::string* path, const std::string& text,
-                     CLI::App* app) {
-  return app->add_option(names, *path, text)->type_name("FILE");
-}
-
-CLI::Option* AddFolder(const std::string& names, std::string* path, const std::string& text,
-                       CLI::App* app) {
-  return app->add_option(names, *path, text)->type_name("FOLDER");
-}
-
-void AddForce(bool* force, CLI::App* app) {
-  app->add_flag("--force", *force,
-                "replace files that this program did not write, or that were changed since");
-}
-
-CLI::Validator OneOf(const std::vector<std::string>& words) {
-  const std::string list = JoinWords(words, ", ");
-  const auto check = [words, list](std::string& word) -> std::string {
-    if (std::find(words.begin(), words.end(), word) != words.end()) return "";
-    return "'" + word + "' is none of " + list + DidYouMean(word, words);
-  };
-  return CLI::Validator(check, "one of " + list);
-}
-
-InputOptions::InputOptions(CLI::App* app) {
-  app->add_option("INPUT", input_, "folder of a data set, or LCM log");
-  AddFolder("--data", &data_, "the same as INPUT", app);
-  AddFile("--log", &log_, "the same as INPUT", app);
+InputOptions::InputOptions(CommandLine* line) {
+  line->Add("INPUT", &input_, "folder of a data set, or LCM log");
+  line->AddFolder("--data", &data_, "the same as INPUT");
+  line->AddFile("--log", &log_, "the same as INPUT");
 }
 
 const std::string& InputOptions::path() const {
@@ -180,7 +157,8 @@ const std::string& InputOptions::path() const {
   return *path;
 }
 
-int RunProgram(int argc, char** argv, CLI::App* app, const std::function<int()>& body) {
+int RunProgram(int argc, char** argv, CommandLine* line, const std::function<int()>& body) {
+  CLI::App* const app = line->app();
   OccupyClosedStreams();
   UseHelpFormatter(std::make_shared<HelpFormatter>(), app);
   app->set_version_flag("--version", app->get_name() + " " + kVersion + " (" + kCommit + ")",

@@ -1,6 +1,5 @@
 // airdos-calibration: what a calibration file says, whether it fits images, and the same in another
 // format.
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -73,47 +72,38 @@ int Check(const Arguments& arguments) {
   return findings.has_errors() ? 1 : 0;
 }
 
-CLI::App* AddCommand(const std::string& name, const std::string& text, Arguments* arguments,
-                     CLI::App* app) {
-  CLI::App* const command = app->add_subcommand(name, text);
-  arguments->calibration.AddTo("INPUT", command);
-  command->get_option("INPUT")->required();
+CommandLine AddCommand(const std::string& name, const std::string& text, Arguments* arguments,
+                       CommandLine* app) {
+  CommandLine command = app->AddCommand(name, text);
+  arguments->calibration.AddTo("INPUT", &command).Required();
   return command;
 }
 
 int Run(int argc, char** argv) {
-  CLI::App app(
+  CommandLine app(
       "What a stereo calibration says, whether it fits images, and the same in another format. "
       "Exit code 0: it can be used; 1: it does not fit the images; 2: it cannot be read.",
       "airdos-calibration");
-  app.require_subcommand(1);
-  app.fallthrough();
+  app.RequireCommand();
   Arguments arguments;
-  CLI::App* const show =
+  CommandLine show =
       AddCommand("show", "Print cameras, baseline and the rectified pair", &arguments, &app);
-  AddFile("--json", &arguments.json, "file to write the same to", show);
-  AddForce(&arguments.force, show);
-  CLI::App* const convert =
+  show.AddFile("--json", &arguments.json, "file to write the same to");
+  show.AddForce(&arguments.force);
+  CommandLine convert =
       AddCommand("convert", "Write the same calibration in another format", &arguments, &app);
-  convert->add_option("--to", arguments.format, "format to write")
-      ->check(OneOf(WrittenFormats()))
-      ->required();
-  AddFolder("--out", &arguments.out, "folder to write to", convert)->required();
-  AddForce(&arguments.force, convert);
-  CLI::App* const check =
-      AddCommand("check", "Hold a calibration against images", &arguments, &app);
-  check
-      ->add_option("--images", arguments.images,
-                   "folders of the left and the right images as recorded")
-      ->type_name("LEFT RIGHT")
-      ->expected(2)
-      ->required();
-  check->add_option("--pairs", arguments.num_pairs, "pairs to look at")
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
+  convert.Add("--to", &arguments.format, "format to write").OneOf(WrittenFormats()).Required();
+  convert.AddFolder("--out", &arguments.out, "folder to write to").Required();
+  convert.AddForce(&arguments.force);
+  CommandLine check = AddCommand("check", "Hold a calibration against images", &arguments, &app);
+  check.Add("--images", &arguments.images, "folders of the left and the right images as recorded")
+      .ShownAs("LEFT RIGHT")
+      .Words(2, 2)
+      .Required();
+  check.Add("--pairs", &arguments.num_pairs, "pairs to look at").Within(1, 10000).ShowDefault();
   return RunProgram(argc, argv, &app, [&] {
-    if (show->parsed()) return Show(arguments);
-    if (convert->parsed()) return Convert(arguments);
+    if (show.is_given()) return Show(arguments);
+    if (convert.is_given()) return Convert(arguments);
     return Check(arguments);
   });
 }

@@ -3,6 +3,7 @@
 #include <limits>
 #include <random>
 
+#include "common/geometry/mahalanobis.h"
 #include "common/geometry/se3.h"
 #include "common/geometry/stereo_camera.h"
 
@@ -16,6 +17,19 @@ Vector6d RandomTangent(std::mt19937* generator, double scale) {
   Vector6d delta;
   for (int i = 0; i < 6; ++i) delta[i] = normal(*generator);
   return delta;
+}
+
+TEST(MahalanobisTest, IsWhatOneWorksOutByHand) {
+  Eigen::Matrix3d covariance;
+  covariance << 4, 0, 0, 0, 2, 1, 0, 1, 2;  // the inverse of its lower block is [2 -1; -1 2] / 3
+  EXPECT_NEAR(SquaredMahalanobis(Eigen::Vector3d(2, 1, 3), covariance), 1 + 14.0 / 3, kExact);
+  Vector6d error;
+  error << 1, 2, 3, 4, 5, 6;
+  Matrix6d variances = Matrix6d::Zero();
+  variances.diagonal() << 1, 4, 9, 16, 25, 36;
+  EXPECT_NEAR(SquaredMahalanobis(error, variances), 6, kExact);
+  variances(3, 3) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(SquaredMahalanobis(error, variances) <= 6);
 }
 
 TEST(Se3Test, BoxplusAndBoxminusAreInverse) {
