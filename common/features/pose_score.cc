@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/geometry/mahalanobis.h"
+#include "common/geometry/covariance.h"
 #include "common/util/check.h"
 
 namespace airdos {

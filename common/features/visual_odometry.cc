@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/features/local_mapping.h"
-#include "common/geometry/mahalanobis.h"
+#include "common/geometry/covariance.h"
 
 namespace airdos {
 namespace {

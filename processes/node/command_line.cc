@@ -6,11 +6,101 @@
 #include <cstdint>
 #include <iostream>
 #include <optional>
+#include <sstream>
 
+#include "common/util/error.h"
 #include "common/util/suggestion.h"
 #include "common/util/words.h"
 
 namespace airdos {
+namespace {
+
+/// Wraps the text into lines of at most `width` columns.
+std::string Wrapped(const std::string& text, std::size_t width) {
+  return JoinWords(WrapWords(text, width), "\n");
+}
+
+/// Formats --help with line wrapping.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    std::string name = make_option_name(option, is_positional);
+    const std::string details = make_option_opts(option);
+    std::string text = option->get_description();
+    constexpr std::size_t kMaxName = 60;
+    if (name.size() + details.size() <= kMaxName) {
+      name += details;
+    } else {
+      text += " [" + details.substr(details.find_first_not_of(' ')) + "]";
+    }
+    std::ostringstream out;
+    CLI::detail::format_help(out, name, Wrapped(text, kWidth - get_column_width()),
+                             get_column_width());
+    return out.str();
+  }
+  std::string make_subcommand(const CLI::App* command) const override {
+    std::ostringstream out;
+    CLI::detail::format_help(out, command->get_display_name(true),
+                             Wrapped(command->get_description(), kWidth - get_column_width()),
+                             get_column_width());
+    return out.str();
+  }
+  std::string make_description(const CLI::App* app) const override {
+    return Wrapped(app->get_description(), kWidth) + "\n";
+  }
+
+ private:
+  static constexpr std::size_t kWidth = 100;
+};
+
+void UseHelpFormatter(const std::shared_ptr<HelpFormatter>& formatter, CLI::App* app) {
+  app->formatter(formatter);
+  for (CLI::App* command : app->get_subcommands({})) UseHelpFormatter(formatter, command);
+}
+
+/// Options of the app and of the given command, without hidden ones.
+std::vector<std::string> OptionNames(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_group().empty()) continue;
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  for (const CLI::App* command : app.get_subcommands()) {
+    for (const std::string& name : OptionNames(*command)) names.push_back(name);
+  }
+  return names;
+}
+
+std::vector<std::string> CommandNames(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  return names;
+}
+
+/// Explains what is unknown on the command line; empty if the error is of another kind.
+std::string ExplainUnknown(const CLI::App& app) {
+  const std::vector<std::string> rest = app.remaining(true);
+  const auto option = std::find_if(rest.begin(), rest.end(), [](const std::string& word) {
+    return word.size() > 1 && word[0] == '-';
+  });
+  const std::string see = " (see --help)";
+  if (option != rest.end()) {
+    const std::string name = option->substr(0, option->find('='));
+    const std::string hint = DidYouMean(name, OptionNames(app));
+    return "there is no option '" + name + "'" + (hint.empty() ? see : hint);
+  }
+  if (rest.empty()) return "";
+  const std::vector<std::string> commands = CommandNames(app);
+  if (!commands.empty() && app.get_subcommands().empty()) {
+    const std::string hint = DidYouMean(rest[0], commands);
+    return "there is no command '" + rest[0] + "'" + (hint.empty() ? see : hint);
+  }
+  return "one argument too many: '" + rest[0] + "'" + see;
+}
+
+}  // namespace
 
 CommandOption CommandOption::Required() const { return CommandOption(option_->required()); }
 
@@ -123,6 +213,24 @@ void CommandLine::RequireCommand() {
 }
 
 void CommandLine::OnGiven(const std::function<void()>& run) { app_->callback(run); }
+
+bool CommandLine::Parse(int argc, char** argv, const std::string& version) {
+  UseHelpFormatter(std::make_shared<HelpFormatter>(), app());
+  app_->set_version_flag("--version", version, "print version and commit");
+  try {
+    app_->parse(argc, argv);
+    return true;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) {
+      const std::string unknown = ExplainUnknown(*app_);
+      throw InputError(unknown.empty() ? error.what() : unknown);
+    }
+    app_->exit(error);  // --help, --version
+    return false;
+  }
+}
+
+std::string CommandLine::program() const { return app_->get_name(); }
 
 bool CommandLine::is_given() const { return app_->parsed(); }
 

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-// Every file that includes CLI11 takes seconds longer to compile, so only those that implement
-// command lines do.
+// Every file that includes CLI11 takes seconds longer to compile: command_line.cc alone does.
 namespace CLI {
 class App;
 class Option;
@@ -83,10 +82,15 @@ class CommandLine {
   /// Whether the command is given; after parsing.
   bool is_given() const;
 
-  CLI::App* app() const { return app_.get(); }
+  /// Parses the words, which sets the variables. Adds --help and --version, which prints `version`;
+  /// false if one of these, or a page, was printed. Throws InputError, which suggests what a
+  /// mistyped word stands for.
+  bool Parse(int argc, char** argv, const std::string& version);
+  std::string program() const;
 
  private:
   explicit CommandLine(const std::shared_ptr<CLI::App>& app) : app_(app) {}
+  CLI::App* app() const { return app_.get(); }
   std::shared_ptr<CLI::App> app_;
 };
 

@@ -287,8 +287,8 @@ TEST_P(OptionsOfAProcessTest, EachChangesSomethingOrHasItsTest) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Processes, OptionsOfAProcessTest, testing::ValuesIn(kProcesses),
-                         [](const testing::TestParamInfo<Process>& info) {
-                           return info.param.name;
+                         [](const testing::TestParamInfo<Process>& process) {
+                           return process.param.name;
                          });
 
 TEST(OptionsEffectTest, EachOptionIsOfAProcessThatIsRunHereOrHasItsTest) {

@@ -1,6 +1,6 @@
 #include "common/optimization/window/trust_rule.h"
 
-#include "common/geometry/mahalanobis.h"
+#include "common/geometry/covariance.h"
 
 namespace airdos {
 
