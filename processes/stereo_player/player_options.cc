@@ -38,8 +38,7 @@ PlayerArguments::PlayerArguments(CommandLine* app) : input_(app) {
   app->AddFlag("--one-session", &options_.is_one_session,
                "With --loop: one long session, its times and image numbers go on");
   AddInputCheckOptions(app, &options_.check);
-  app->Add("--say-every", &options_.say_every, "Say how far it is every N frames")
-      .NotNegative();
+  app->Add("--say-every", &options_.say_every, "Say how far it is every N frames").NotNegative();
   app->Add("--pace", &pace_, "lockstep: nothing is ever lost; realtime: like cameras")
       .ShowDefault()
       .OneOf({"lockstep", "realtime"});
