@@ -67,11 +67,14 @@ endfunction()
 # What is tested is optimized as it runs; optimizing the tests would only take time. At -O1 GCC 12 takes an empty optional's
 # payload for something uninitialized.
 set(airdos_test_options -O1 -Wno-maybe-uninitialized)
-# airdos_test(NAME TIER SOURCES x_test.cc DEPS libraries): a GoogleTest executable; the tier is its ctest label
+# Ends what hangs; a test is not to fail because its machine is busy.
+set(AIRDOS_TEST_TIMEOUT_S 1200)
+# airdos_test(NAME TIER SOURCES x_test.cc DEPS libraries): a GoogleTest executable; the tier is its ctest label. COST: about the seconds of
+# its longest test, for ctest to start long ones first
 function(airdos_test name tier)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS" ${ARGN})
-  if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 120)
+  cmake_parse_arguments(ARG "" "COST" "SOURCES;DEPS" ${ARGN})
+  if(NOT ARG_COST)
+    set(ARG_COST 1)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPS} airdos_options GTest::gtest_main)
@@ -84,5 +87,5 @@ function(airdos_test name tier)
     add_custom_target(airdos_tests_${tier})
   endif()
   add_dependencies(airdos_tests_${tier} ${name})
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${tier} TIMEOUT ${ARG_TIMEOUT})
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${tier} TIMEOUT ${AIRDOS_TEST_TIMEOUT_S} COST ${ARG_COST})
 endfunction()

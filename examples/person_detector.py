@@ -4,7 +4,9 @@
 The LCM URL is LCM_DEFAULT_URL, or LCM's default.
 """
 import argparse
+import struct
 import sys
+import zlib
 
 from airdos import Bus, LogReader, channels, image_t, person_keypoints_t, person_mask_t
 
@@ -17,9 +19,19 @@ KEYPOINTS_OF = {
 def detect(image):
     """Your network: for each person 18 keypoints (u px, v px, confidence 0..1) in COCO-18 order, and a mask or b"".
 
-    `image.data` is a PNG or JPEG file. The mask is width * height bytes, 0 where there is nobody. Left pictures only need one.
+    `image.data` is what `image.encoding` says: a JPEG or PNG file, or raw rows of grey or BGR pixels (image_t.ENCODING_*). The mask is
+    width * height bytes, 0 where there is nobody. Left pictures only need one.
     """
     return [], b""
+
+
+def as_png(width, height, gray):
+    """The mask as a PNG file. As raw bytes it might be larger than the 128 kB that get through receivers' default buffers."""
+    rows = b"".join(b"\0" + gray[y * width : (y + 1) * width] for y in range(height))
+    chunks = {b"IHDR": struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0), b"IDAT": zlib.compress(rows), b"IEND": b""}
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)) for name, data in chunks.items()
+    )
 
 
 def messages(channel, image):
@@ -30,9 +42,10 @@ def messages(channel, image):
     keypoints = {"num_people": len(people), "num_joints": 18, "u_px": rows[0], "v_px": rows[1], "confidence": rows[2]}
     yield KEYPOINTS_OF[channel], person_keypoints_t(**header, layout=person_keypoints_t.LAYOUT_COCO18, **keypoints)
     if channel == channels.CAMERA_LEFT:
-        encoding = person_mask_t.ENCODING_RAW_GRAY8 if mask else person_mask_t.ENCODING_NONE
-        size = {"width": image.width, "height": image.height, "num_bytes": len(mask)}
-        yield channels.PERSON_MASK, person_mask_t(**header, encoding=encoding, **size, data=mask)
+        encoding = person_mask_t.ENCODING_PNG if mask else person_mask_t.ENCODING_NONE
+        data = as_png(image.width, image.height, mask) if mask else b""
+        size = {"width": image.width, "height": image.height, "num_bytes": len(data)}
+        yield channels.PERSON_MASK, person_mask_t(**header, encoding=encoding, **size, data=data)
 
 
 def read_recorded(path):

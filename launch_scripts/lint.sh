@@ -7,7 +7,7 @@
 #   --all     clang-tidy with all checks of .clang-tidy, the static analyzer too, instead of QUICK_CHECKS, each unit by itself: an hour
 #             or two of one processor; CI does it weekly
 #   --fast    all but clang-tidy: seconds, for a commit hook
-#   --jobs N  so many at a time (default: one a processor)
+#   --jobs N  units at a time (default: one per processor)
 #   PATH…     only these files and folders
 #   --help    this text
 #

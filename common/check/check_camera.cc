@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "common/dataset/camera_causes.h"
+#include "common/calibration/camera_causes.h"
 
 namespace airdos {
 namespace {

@@ -9,6 +9,7 @@
 #include "common/util/error.h"
 #include "common/util/input_file.h"
 #include "common/util/suggestion.h"
+#include "common/util/words.h"
 
 namespace airdos {
 namespace {
@@ -131,12 +132,10 @@ void ConfigReader::Read(const std::string& key, double* value, double min, doubl
 
 int ConfigReader::ReadChoice(const std::string& key, const std::vector<std::string>& choices) {
   const std::string& raw = Raw(key);
-  std::string list;
   for (std::size_t i = 0; i < choices.size(); ++i) {
     if (choices[i] == raw) return static_cast<int>(i);
-    list += (i == 0 ? "" : ", ") + choices[i];
   }
-  Fail(key, raw, "must be one of " + list + DidYouMean(raw, choices));
+  Fail(key, raw, "must be one of " + JoinWords(choices, ", ") + DidYouMean(raw, choices));
 }
 
 void ConfigReader::Finish() const {

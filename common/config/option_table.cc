@@ -124,11 +124,7 @@ void OptionTable::Add(const std::string& key, std::vector<std::string>* member,
     config->Read(key, &text);
     *member = SplitAtCommas(text);
   };
-  option.value = [member] {
-    std::string text;
-    for (const std::string& word : *member) text += (text.empty() ? "" : ",") + word;
-    return QuotedYaml(text);
-  };
+  option.value = [member] { return QuotedYaml(JoinWords(*member, ",")); };
   Append(Option::Kind::kWords, key, {member}, std::move(option));
 }
 

@@ -27,6 +27,8 @@ struct Choice {
 
 /// One option as its table describes it.
 struct Option {
+  /// What its value is: true or false, a whole number, any number, a text, a list of words or of
+  /// whole numbers, one of a few words.
   enum class Kind { kSwitch, kWhole, kNumber, kText, kWords, kWholes, kChoice };
   Kind kind = Kind::kText;
   std::string key;                          ///< "section.key"
@@ -45,6 +47,7 @@ struct Option {
 /// with a table is below and in option_pages.h.
 class OptionTable {
  public:
+  /// The options from `first_option` to the next section's, under one heading of the file.
   struct Section {
     std::string name;
     std::string help;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "common/dataset/camera_causes.h"
+#include "common/calibration/camera_causes.h"
 #include "common/util/error.h"
 
 namespace airdos {

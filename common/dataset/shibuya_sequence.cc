@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "common/dataset/calib_json.h"
+#include "common/calibration/calib_json.h"
 #include "common/dataset/folder_sequence.h"
 #include "common/dataset/sequence_files.h"
 #include "common/dataset/times_file.h"

@@ -1,24 +1,21 @@
 #include "common/dataset/times_file.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <regex>
 
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
 #include "common/util/format.h"
 #include "common/util/quantile.h"
 #include "common/util/text_file.h"
+#include "common/util/words.h"
 
 namespace airdos {
 namespace {
 
-std::string Joined(const TextLine& line) {
-  std::string text;
-  for (const std::string& word : line.words) text += (text.empty() ? "" : " ") + word;
-  return Shown(text);
-}
+std::string Joined(const TextLine& line) { return Shown(JoinWords(line.words, " ")); }
 
 bool IsNumber(const std::string& word, double* number) {
   char* end = nullptr;
@@ -26,9 +23,14 @@ bool IsNumber(const std::string& word, double* number) {
   return !word.empty() && end == word.c_str() + word.size() && std::isfinite(*number);
 }
 
+/// Whether the word begins like 2026-03-01 or 2026/03/01.
 bool IsDate(const std::string& word) {
-  static const std::regex date("[0-9]{4}[-/][0-9]{2}[-/][0-9]{2}.*");
-  return word.size() < 60 && std::regex_match(word, date);
+  const std::string pattern = "dddd-dd-dd";
+  if (word.size() < pattern.size()) return false;
+  return std::equal(pattern.begin(), pattern.end(), word.begin(), [](char expected, char c) {
+    return expected == 'd' ? std::isdigit(static_cast<unsigned char>(c)) != 0
+                           : c == '-' || c == '/';
+  });
 }
 
 bool IsImageName(const std::string& word) {

@@ -23,6 +23,7 @@ struct Remark {
   bool is_warning = false;  ///< false for a note on how a file was interpreted
   std::string text;
 };
+/// In the order in which they came up.
 using Remarks = std::vector<Remark>;
 
 /// Order of a quaternion's components in a file.

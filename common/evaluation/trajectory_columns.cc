@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "common/util/error.h"
+#include "common/util/words.h"
 
 namespace airdos {
 namespace {
@@ -195,8 +196,7 @@ bool IsNoValue(const std::string& field) {
 }
 
 std::vector<std::string> SplitFields(const TextLine& line, const std::string& where) {
-  std::string text;
-  for (const std::string& word : line.words) text += (text.empty() ? "" : " ") + word;
+  const std::string text = JoinWords(line.words, " ");
   const bool has_semicolons = text.find(';') != std::string::npos;
   std::vector<std::string> fields = has_semicolons ? SplitAt(';', text) : line.words;
   const auto num_decimal = std::count_if(fields.begin(), fields.end(), HasDecimalComma);

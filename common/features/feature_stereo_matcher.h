@@ -10,9 +10,10 @@
 
 namespace airdos {
 
+/// What a match of a feature in left and right image must fulfil.
 struct FeatureStereoMatcherOptions {
-  double min_depth_m = 0.5;       ///< nearer than this nothing is matched
-  double min_disparity_px = 0.7;  ///< farther than this the depth says nothing
+  double min_depth_m = 0.5;       ///< nothing nearer is matched
+  double min_disparity_px = 0.7;  ///< with less, the depth says nothing
   int max_hamming_bits = 75;
   double max_row_error_px = 1.5;  ///< of a rectified pair, at the feature's level
   double min_correlation = 0.92;  ///< of the aligned patch

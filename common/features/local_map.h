@@ -42,7 +42,7 @@ struct LocalLandmark {
 /// Limits of the LocalMap.
 struct LocalMapOptions {
   int max_landmarks = 6000;
-  int max_frames_unconfirmed = 8;  ///< a landmark seen once is dropped after so many frames
+  int max_frames_unconfirmed = 8;  ///< a landmark seen once is dropped after this many
   double min_found_ratio = 0.15;   ///< of the frames in which it was expected
 };
 

@@ -2,6 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <optional>
+
+#include "common/geometry/covariance.h"
 
 namespace airdos {
 namespace {
@@ -37,18 +40,19 @@ PeoplePose EstimatePoseFromPeople(const PosePrior& prior,
                                   const std::vector<HumanConstraint>& people) {
   PeoplePose pose{prior, Matrix6d::Zero(), static_cast<int>(people.size())};
   if (people.empty()) return pose;
-  const Matrix6d prior_information = prior.covariance.inverse();
+  const Matrix6d prior_information = Inverse(prior.covariance);
   Se3& T_W_C = pose.prior.T_W_C;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     pose.information.setZero();
     Vector6d b = -prior_information * Boxminus(T_W_C, prior.T_W_C);
     for (const HumanConstraint& person : people) AddPerson(person, T_W_C, &pose.information, &b);
-    const Vector6d delta = (prior_information + pose.information).ldlt().solve(b);
-    if (!delta.allFinite()) return {prior, Matrix6d::Zero(), pose.num_people};
-    T_W_C = Boxplus(T_W_C, delta);
-    if (delta.norm() < kConverged) break;
+    const std::optional<Vector6d> delta = SolvePositive(prior_information + pose.information, b);
+    if (!delta || !delta->allFinite()) return {prior, Matrix6d::Zero(), pose.num_people};
+    T_W_C = Boxplus(T_W_C, *delta);
+    if (delta->norm() < kConverged) break;
   }
-  pose.prior.covariance = (prior_information + pose.information).inverse();
+  const Matrix6d information = prior_information + pose.information;
+  pose.prior.covariance = Inverse(information);
   return pose;
 }
 

@@ -5,6 +5,8 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
+#include "common/geometry/covariance.h"
+
 namespace airdos {
 namespace {
 
@@ -32,7 +34,7 @@ void Whiten(const Eigen::Matrix3d& J_C, const Eigen::Quaterniond& q_C_W,
     return;
   }
   const Eigen::Matrix3d J = J_C * q_C_W.toRotationMatrix();  // with respect to p_W
-  Eigen::Matrix3d S = J * observation.covariance_W * J.transpose();
+  Eigen::Matrix3d S = Propagated(J, observation.covariance_W);
   if (!observation.has_right) {
     S.row(2).setZero();
     S.col(2).setZero();
@@ -109,12 +111,10 @@ bool Step(const Knowledge& known, const std::vector<bool>& is_used, bool robust,
   }
   if (known.prior) AddPrior(*known.prior, known.prior_information, *T_W_C, &H, &b);
   if (!known.prior && num_used < 3) return false;
-  const Eigen::LDLT<Matrix6d> ldlt(H);
-  if (ldlt.info() != Eigen::Success || !ldlt.isPositive()) return false;
-  const Vector6d delta = ldlt.solve(b);
-  if (!delta.allFinite() || delta.norm() > 50) return false;
-  *T_W_C = Boxplus(*T_W_C, delta);
-  *step_norm = delta.norm();
+  const std::optional<Vector6d> delta = SolvePositive(H, b);
+  if (!delta || !delta->allFinite() || delta->norm() > 50) return false;
+  *T_W_C = Boxplus(*T_W_C, *delta);
+  *step_norm = delta->norm();
   return true;
 }
 
@@ -130,9 +130,8 @@ void GateByPrior(const Knowledge& known, std::vector<bool>* is_possible) {
       continue;
     }
     const Eigen::Matrix3d S =
-        residual.jacobian * known.prior->covariance * residual.jacobian.transpose() +
-        Eigen::Matrix3d::Identity();
-    (*is_possible)[i] = residual.value.dot(S.ldlt().solve(residual.value)) <= kMaxChi2;
+        Propagated(residual.jacobian, known.prior->covariance) + Eigen::Matrix3d::Identity();
+    (*is_possible)[i] = SquaredMahalanobis(residual.value, S) <= kMaxChi2;
   }
 }
 
@@ -149,7 +148,7 @@ PoseEstimate EstimatePose(const StereoCamera& camera,
                           const std::vector<PoseObservation>& observations, const Se3& start,
                           const std::optional<PosePrior>& prior) {
   Knowledge known{camera, observations, prior, Matrix6d::Zero()};
-  if (prior) known.prior_information = prior->covariance.inverse();
+  if (prior) known.prior_information = Inverse(prior->covariance);
   PoseEstimate estimate;
   estimate.T_W_C = start;
   estimate.is_inlier.assign(observations.size(), true);

@@ -1,8 +1,8 @@
 #include "common/features/pose_score.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
+#include "common/geometry/covariance.h"
 #include "common/util/check.h"
 
 namespace airdos {
@@ -11,7 +11,7 @@ double LogPrior(const PosePrior& prior, const Se3& T_W_C) {
   constexpr double kFreedom = 3;
   constexpr double kDimension = 6;
   const Vector6d innovation = Boxminus(T_W_C, prior.T_W_C);
-  const double chi2 = innovation.dot(prior.covariance.ldlt().solve(innovation));
+  const double chi2 = SquaredMahalanobis(innovation, prior.covariance);
   return -0.5 * (kFreedom + kDimension) * std::log1p(chi2 / kFreedom);
 }
 

@@ -41,7 +41,7 @@ MeasuredPose PoseSearch::FindBest(const PosePrior& prior) const {
   const ProjectionSearch wide{options_.wide_radius_px, options_.wide_max_hamming_bits, 0.9};
   const ProjectionSearch narrow{8, options_.narrow_max_hamming_bits, 0.9};
   MeasuredPose best = Measure(TrackFrom(prior.T_W_C, wide, prior), prior);
-  // With so many that agree no other pose has as many. A frame of few landmarks gets both tries.
+  // With this many that agree no other pose has more. A frame of few landmarks gets both tries.
   if (best.score >= options_.rich_observations) return best;
   const std::optional<Se3> relocated = Relocate();
   if (!relocated) return best;

@@ -1,11 +1,11 @@
 #include "common/features/visual_odometry.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <set>
 #include <utility>
 
 #include "common/features/local_mapping.h"
+#include "common/geometry/covariance.h"
 
 namespace airdos {
 namespace {
@@ -167,7 +167,7 @@ bool VisualOdometry::IsBelievable(const PoseEstimate& estimate, const PosePrior&
   constexpr double kMaxChi2 = 22.5;  // of 6 degrees of freedom, one in a thousand
   if (estimate.num_inliers >= options_.min_inliers_tracking) return true;
   const Vector6d shift = Boxminus(estimate.T_W_C, prior.T_W_C);
-  return shift.dot(prior.covariance.ldlt().solve(shift)) <= kMaxChi2;
+  return SquaredMahalanobis(shift, prior.covariance) <= kMaxChi2;
 }
 
 TrackingState VisualOdometry::StateOf(int num_inliers) const {

@@ -19,7 +19,13 @@
 
 namespace airdos {
 
-enum class TrackingState { kInitializing, kTracking, kWeak, kCoasting };
+/// What the pose of a frame stands on.
+enum class TrackingState {
+  kInitializing,  ///< nothing yet: the pose is that of W
+  kTracking,      ///< enough landmarks
+  kWeak,          ///< few landmarks, with the prediction and people beside them
+  kCoasting,      ///< the prediction alone, or people
+};
 
 /// The result of one frame.
 struct OdometryFrame {

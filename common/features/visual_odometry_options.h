@@ -13,7 +13,7 @@ namespace airdos {
 struct VisualOdometryOptions {
   FeatureExtractorOptions extractor;
   FeatureStereoMatcherOptions stereo;
-  /// So many static landmarks are plenty (about half of max_observations). Where the last frame
+  /// This many static landmarks are plenty (about half of max_observations). Where the last frame
   /// held them there is a choice, and only better stereo matches are taken: with doubtful ones
   /// paths came out half a percent too long (KITTI). Where they agree with one pose no other is
   /// tried.
@@ -32,7 +32,7 @@ struct VisualOdometryOptions {
   int observation_cell_px = 16;      ///< at most two observed landmarks in each cell of this size
   CameraMotionFilterOptions motion;
   PeopleFilterOptions people;
-  int max_static_for_people = 15;  ///< with so many static landmarks people have no say
+  int max_static_for_people = 15;  ///< with this many static landmarks people have no say
 };
 
 }  // namespace airdos

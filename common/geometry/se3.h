@@ -6,6 +6,7 @@
 
 namespace airdos {
 
+/// A tangent of SE(3), translation first, and a covariance of it: see Boxplus().
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 

@@ -20,11 +20,11 @@ struct HumanTrackerOptions {
   /// compare.
   double max_squared_sigmas = 12;
   double left_only_max_squared_sigmas = 6;
-  int max_missed_frames = 10;  ///< after as many frames without a detection a track ends
+  int max_missed_frames = 10;  ///< a track ends after this many without a detection
   int min_seen_to_report = 1;  ///< detections of a person before it is reported
   int min_joints = 4;          ///< with fewer joints a person is not reported
   bool use_left_only = true;   ///< report people whom only the left detections have
-  int max_carried_frames = 1;  ///< report people by optical flow for as many missed frames
+  int max_carried_frames = 1;  ///< missed frames in which optical flow stands in
   double carried_sigma_factor = 1.5;
   /// Squared errors that exchanging sides must save; the same where left and right detection
   /// disagree on sides.

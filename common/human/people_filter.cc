@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "common/geometry/covariance.h"
+
 namespace airdos {
 namespace {
 
@@ -30,14 +32,17 @@ Eigen::Matrix<double, 3, 6> PointJacobian(const Eigen::Matrix3d& R_W_C,
 void PeopleFilter::Predict(double step_s) {
   const double wobble = options_.wobble_m * options_.wobble_m * step_s / kNominalStep_s;
   for (auto& [id, person] : people_) {
-    Covariance F = Covariance::Identity();
-    for (int j = 0; j < kNumBodyJoints; ++j) {
-      F.block<3, 3>(3 + 3 * j, 0) = step_s * Eigen::Matrix3d::Identity();
-    }
     const double change_m_s = person.acceleration_m_s2 * step_s;
     person.covariance.topLeftCorner<3, 3>().diagonal().array() += change_m_s * change_m_s;
-    person.state = (F * person.state).eval();
-    person.covariance = (F * person.covariance * F.transpose()).eval();
+    // F is the identity, and step_s in the columns of the velocity: x = F x, P = F P F^T.
+    Covariance& P = person.covariance;
+    for (int row = 3; row < kStateSize; row += 3) {
+      person.state.segment<3>(row) += step_s * person.state.head<3>();
+      P.middleRows<3>(row) += step_s * P.topRows<3>();
+    }
+    for (int column = 3; column < kStateSize; column += 3) {
+      P.middleCols<3>(column) += step_s * P.leftCols<3>();
+    }
     person.covariance.bottomRightCorner<kStateSize - 3, kStateSize - 3>().diagonal().array() +=
         wobble;
   }
@@ -56,11 +61,11 @@ std::optional<PeopleFilter::Match> PeopleFilter::MatchJoints(
     if (!place || !person.is_known[static_cast<std::size_t>(*place)]) continue;
     const int row = 3 + 3 * *place;
     const Eigen::Vector3d residual_W = T_W_C * joint.p_C - person.state.segment<3>(row);
-    const Eigen::Matrix3d measured_W = R_W_C * joint.covariance_C * R_W_C.transpose();
+    const Eigen::Matrix3d measured_W = Propagated(R_W_C, joint.covariance_C);
     const auto J = PointJacobian(R_W_C, joint.p_C);
     const Eigen::Matrix3d S =
-        person.covariance.block<3, 3>(row, row) + measured_W + J * pose_covariance * J.transpose();
-    if (!(residual_W.dot(S.ldlt().solve(residual_W)) <= max_error2)) continue;
+        person.covariance.block<3, 3>(row, row) + measured_W + Propagated(J, pose_covariance);
+    if (!(SquaredMahalanobis(residual_W, S) <= max_error2)) continue;
     match.places.push_back(*place);
     match.p_C.push_back(joint.p_C);
     residuals.push_back(residual_W);
@@ -142,7 +147,7 @@ void PeopleFilter::LearnAcceleration(const Match& match, const Matrix6d& pose_co
                             match.jacobian * pose_covariance * match.jacobian.transpose();
   const Eigen::Matrix3d expected = mean * S * mean.transpose();
   const Eigen::Vector3d error = mean * match.residual_W;
-  const double ratio = error.dot(expected.ldlt().solve(error)) / 3;
+  const double ratio = SquaredMahalanobis(error, expected) / 3;
   if (!std::isfinite(ratio)) return;
   // Robust: one bad frame counts at most three times the expected variance.
   const double factor = 1 + kAccelerationRate * (std::min(ratio, 3.0) - 1);
@@ -165,7 +170,7 @@ void PeopleFilter::AddNewJoints(const HumanMeasurement& measurement, const Se3& 
     person->covariance.middleRows<3>(row).setZero();
     person->covariance.middleCols<3>(row).setZero();
     person->covariance.block<3, 3>(row, row) =
-        R_W_C * joint.covariance_C * R_W_C.transpose() + J * pose_covariance * J.transpose();
+        Propagated(R_W_C, joint.covariance_C) + Propagated(J, pose_covariance);
   }
 }
 
@@ -194,16 +199,15 @@ void PeopleFilter::Update(const std::vector<HumanMeasurement>& people, const Se3
 
 void PeopleFilter::Transform(const Se3& T_Wnew_Wold) {
   const Eigen::Matrix3d R = T_Wnew_Wold.rotation.toRotationMatrix();
-  Covariance rotation = Covariance::Zero();
-  for (int block = 0; block <= kNumBodyJoints; ++block) {
-    rotation.block<3, 3>(3 * block, 3 * block) = R;
-  }
   for (auto& [id, person] : people_) {
-    person.state = (rotation * person.state).eval();
-    for (int j = 0; j < kNumBodyJoints; ++j) {
-      person.state.segment<3>(3 + 3 * j) += T_Wnew_Wold.translation;
+    for (int row = 0; row < kStateSize; row += 3) {
+      person.state.segment<3>(row) = (R * person.state.segment<3>(row)).eval();
+      if (row > 0) person.state.segment<3>(row) += T_Wnew_Wold.translation;
+      for (int column = 0; column < kStateSize; column += 3) {
+        const Eigen::Matrix3d block = person.covariance.block<3, 3>(row, column);
+        person.covariance.block<3, 3>(row, column) = Propagated(R, block);
+      }
     }
-    person.covariance = (rotation * person.covariance * rotation.transpose()).eval();
   }
 }
 

@@ -9,8 +9,9 @@
 
 namespace airdos {
 
+/// What two detections, one in each image, must fulfil to be one person.
 struct PersonPairingOptions {
-  double min_confidence = 0.1;  ///< keypoints below it are not looked at
+  double min_confidence = 0.1;  ///< keypoints below it are ignored
   int min_joints = 4;           ///< that both images must see of a person
   double min_depth_m = 0.5;
   double max_depth_m = 40;
@@ -31,6 +32,7 @@ struct PersonPair {
   double cost = 0;
 };
 
+/// Who is who in the two images of a frame.
 struct PersonPairing {
   std::vector<PersonPair> pairs;  ///< sorted by left
   std::vector<int> unpaired_left;

@@ -1,6 +1,7 @@
 #ifndef AIRDOS_COMMON_UTIL_INPUT_FILE_H_
 #define AIRDOS_COMMON_UTIL_INPUT_FILE_H_
 
+#include <cstddef>
 #include <string>
 
 namespace airdos {
@@ -10,6 +11,10 @@ namespace airdos {
 /// InputError naming the path if there is no file, if it is a folder, pipe, device or socket, or if
 /// it may not be read.
 void RequireRegularFile(const std::string& path);
+
+/// A whole regular file. Throws InputError naming the path where it cannot be read, or holds more
+/// than `max_bytes` bytes.
+std::string ReadWholeFile(const std::string& path, std::size_t max_bytes);
 
 }  // namespace airdos
 

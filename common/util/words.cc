@@ -17,6 +17,12 @@ std::vector<std::string> WrapWords(const std::string& text, std::size_t width) {
   return lines;
 }
 
+std::string JoinWords(const std::vector<std::string>& words, const std::string& between) {
+  std::string text;
+  for (const std::string& word : words) text += (&word == &words.front() ? "" : between) + word;
+  return text;
+}
+
 std::vector<std::string> SplitAtCommas(const std::string& text) {
   std::vector<std::string> parts;
   std::istringstream stream(text);

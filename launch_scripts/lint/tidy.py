@@ -22,16 +22,20 @@ import sys
 
 MAX_BATCH = 40
 # Where units are joined, the local names of one hide those of another; g++ warns of real shadows in each build. What clang's
-# -Wconversion says beyond that of g++, an int as an index, is no mistake here. Twenty errors would end a unit, and look like a batch
-# that does not compile.
-FLAGS = ["-Wno-shadow", "-Wno-sign-conversion", "-ferror-limit=0"]
+# -Wconversion says beyond that of g++, an int as an index, is no mistake here. A main() that goes by another name would have to return
+# something; of other functions g++ knows. Twenty errors would end a unit, and look like a batch that does not compile.
+FLAGS = ["-Wno-shadow", "-Wno-sign-conversion", "-Wno-return-type", "-ferror-limit=0"]
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.M)
 TYPE = re.compile(r"^(?:struct|class|enum class|enum|using)\s+(\w+)\b(?!;)", re.M)
 TEST = re.compile(r"^(?:TEST|TEST_F|TEST_P|TYPED_TEST|BENCHMARK\w*)\((\w+)(?:, (\w+))?\)", re.M)
 ANONYMOUS = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.M | re.S)
 VARIABLE = re.compile(r"^(?:static |inline |constexpr |const |thread_local )+[^(={;]*?(\w+)(?:\[[^\]]*\])*\s*[={;]", re.M)
-FUNCTION = re.compile(r"^\w[^=;(\n]*?\b(\w+)\(", re.M)
+FUNCTION = re.compile(r"^(?:\[\[[^\]\n]*\]\] )?\w[^=;(\n]*?\b(\w+)\(", re.M)
+QUALIFIED = re.compile(r"::(\w+)")
+MAIN = re.compile(r"^int (main)\(", re.M)
 WORD = re.compile(r"\w+")
+# What the macros of GoogleTest name, testing::Message, and a unit may name, too.
+IN_MACROS = {"Message"}
 FINDING = re.compile(r"^(?P<file>/[^:\n]+):(?P<line>\d+):(?P<column>\d+): (?:warning|error): .*\[(?P<check>[^\]]+)\]$")
 
 
@@ -76,7 +80,7 @@ class Tree:
     def local_names(self, path):
         """What would be defined twice if two units with the same name were one."""
         text = self.text(path)
-        names = self.tests(path)
+        names = self.tests(path) | set(MAIN.findall(text))
         for inside in ANONYMOUS.findall(text) + re.findall(r"^static .*?[;{]$", text, re.M):
             for pattern in (TYPE, VARIABLE, FUNCTION):
                 names.update(pattern.findall(inside))
@@ -100,8 +104,10 @@ class Unit:
         self.closure = tree.closure(path)
         self.names = tree.local_names(path)
         self.declared = tree.in_headers(TYPE, self.closure) | tree.in_headers(FUNCTION, self.closure)
-        # A macro would change these in its headers, too, or does not reach them. They must be nobody else's.
-        self.fixed_names = self.names & (tree.in_headers(WORD, self.closure) | tree.tests(path))
+        # A macro would change these in its headers, too, or where another's are meant (std::move), or does not reach them. They must
+        # be nobody else's. Of "main" headers speak in comments only.
+        unchangeable = tree.in_headers(WORD, self.closure) | tree.tests(path) | tree.found(QUALIFIED, path) | IN_MACROS
+        self.fixed_names = self.names & unchangeable - {"main"}
         top = os.path.relpath(path, tree.folders[0]).split(os.sep)[0]
         self.group = (top, next((word for word in self.flags if word.endswith(".pch")), ""))
 
@@ -165,6 +171,7 @@ class Runner:
         self.tree = tree
         self.options = options
         self.folder = os.path.join(options.build, "tidy")
+        self.num_halved = 0
         os.makedirs(self.folder, exist_ok=True)
         version = subprocess.run([options.program, "--version"], capture_output=True, text=True, check=True).stdout
         with open(os.path.join(options.root, ".clang-tidy"), encoding="utf-8") as file:
@@ -202,6 +209,7 @@ class Runner:
         return result
 
     def halve(self, batch):
+        self.num_halved += 1
         middle = len(batch) // 2
         return self.run(batch[:middle]) + self.run(batch[middle:])
 
@@ -309,7 +317,8 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         headers, run = check_lone_headers(tree, todo, runner)
         num = print_findings(itertools.chain(pool.map(runner.run, batches), pool.map(run, headers)))
-    print(f"clang-tidy: {len(todo)} units in {len(batches)} batches, {len(headers)} headers by themselves, {num} findings")
+    halved = f" ({runner.num_halved} halved, which takes twice as long)" if runner.num_halved else ""
+    print(f"clang-tidy: {len(todo)} units in {len(batches)} batches{halved}, {len(headers)} headers by themselves, {num} findings")
     return int(num > 0)
 
 

@@ -32,9 +32,9 @@ void AddStereo(VisualOdometryOptions* odometry, OptionTable* table) {
   FeatureStereoMatcherOptions* stereo = &odometry->stereo;
   table->AddSection("stereo");
   table->Add("stereo.min_depth_m", &stereo->min_depth_m, {0.05, 100}, "m",
-             "nearer than this nothing is matched");
+             "nothing nearer is matched");
   table->Add("stereo.min_disparity_px", &stereo->min_disparity_px, {0.01, 50}, "px",
-             "with less disparity than this the depth says nothing");
+             "with less disparity, the depth says nothing");
   table->Add("stereo.max_row_error_px", &stereo->max_row_error_px, {0.5, 10}, "px",
              "between the rows of a rectified pair, at the feature's level");
   table->Add("stereo.max_hamming_bits", &stereo->max_hamming_bits, {1, 256}, "bits",

@@ -7,6 +7,7 @@
 
 namespace airdos {
 
+/// What the frontend is asked to do.
 struct FrontendOptions {
   VisualOdometryOptions odometry;
   bool use_masks = true;

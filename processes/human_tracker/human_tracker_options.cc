@@ -17,7 +17,7 @@ void AddShared(HumanTrackerOptions* options, OptionTable* table) {
   table->AddShared(
       "keypoints.min_confidence",
       {&matcher->min_confidence, &triangulator->min_confidence, &track->min_confidence}, {0.001, 1},
-      "0..1", "keypoints below it are not looked at");
+      "0..1", "keypoints below it are ignored");
   table->AddShared("keypoints.sigma_min_px", noise(&KeypointNoise::min_px), {0.01, 100}, "px",
                    "least standard deviation of a keypoint");
   table->AddShared("keypoints.sigma_per_height", noise(&KeypointNoise::per_height), {0, 1},

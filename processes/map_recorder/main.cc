@@ -12,9 +12,8 @@ int main(int argc, char** argv) {
   info.description = "Records trajectory, people and map into a crash-safe file";
   std::string run_dir;
   const airdos::CommonArguments* common = nullptr;
-  info.add_options = [&](CLI::App* app, const airdos::CommonArguments& arguments) {
-    airdos::AddFolder("--run-dir", &run_dir, "folder of map and trajectories (output.directory)",
-                      app);
+  info.add_options = [&](airdos::CommandLine* app, const airdos::CommonArguments& arguments) {
+    app->AddFolder("--run-dir", &run_dir, "folder of map and trajectories (output.directory)");
     common = &arguments;
   };
   info.make_node = [&](airdos::ConfigReader* config) {

@@ -143,7 +143,7 @@ std::string MapRecorderNode::AddCalibration(const stereo_calibration_t& message)
 std::string MapRecorderNode::AddGroundTruth(const pose_t& message) {
   if (ground_truth_.count(message.session) == 0 && ground_truth_.size() > kMaxSessionsAhead)
     return "too many sessions without a frame";
-  if (num_ground_truth_ >= kMaxGroundTruth) return "too many ground truth poses";
+  if (num_ground_truth_ >= options_.max_ground_truth) return "too many ground truth poses";
   std::map<std::int64_t, GroundTruth>& poses = ground_truth_[message.session];
   const GroundTruth truth = {message.axes, message.utime,
                              ToSe3(message.position, message.orientation)};

@@ -52,10 +52,9 @@ struct MapRecorderInputs {
 /// a kill loses at most kGroundTruthPerNote poses of the ground truth.
 ///
 /// Memory: the open chunk, and the ground truth that has not been written yet (at most
-/// kMaxGroundTruth poses).
+/// MapRecorderOptions::max_ground_truth poses).
 class MapRecorderNode : public FrameNode<MapRecorderInputs> {
  public:
-  static constexpr std::size_t kMaxGroundTruth = 1000000;
   static constexpr std::size_t kGroundTruthPerNote = 10;
   static constexpr std::int64_t kGroundTruthLag = 1000;
   static constexpr int kMaxSessions = SessionFiles::kMaxSessions;

@@ -1,6 +1,7 @@
 #ifndef AIRDOS_PROCESSES_MAP_RECORDER_MAP_RECORDER_OPTIONS_H_
 #define AIRDOS_PROCESSES_MAP_RECORDER_MAP_RECORDER_OPTIONS_H_
 
+#include <cstddef>
 #include <functional>
 #include <string>
 
@@ -15,7 +16,9 @@ struct MapRecorderOptions {
   std::string directory;      ///< made if it is not there; must be named
   int chunk_frames = 10;      ///< a kill loses at most one chunk
   bool export_at_end = true;  ///< also write the exports of common/map/map_export.h
-  OutputRules rules;          ///< what may be replaced; not in the configuration
+  // Not in the configuration.
+  std::size_t max_ground_truth = 1000000;  ///< poses in memory; further ones are rejected
+  OutputRules rules;                       ///< what may be replaced
   /// Takes lines for the user; by default they go to stderr as "map_recorder: ...".
   std::function<void(const std::string&)> say = SayOnStderr;
 

@@ -63,7 +63,7 @@ void AddPeople(OptimizerOptions* options, OptionTable* table) {
   table->AddSection("people");
   table->AddChoice<PeopleMode>(
       "people.mode", &options->people,
-      {{"off", PeopleMode::kOff, "people are not looked at"},
+      {{"off", PeopleMode::kOff, "people are ignored"},
        {"mask_only", PeopleMode::kMaskOnly,
         "they only mask static features (the frontend does); here the same as off"},
        {"on", PeopleMode::kOn, "their joints are part of the adjustment"}});

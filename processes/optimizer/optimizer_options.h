@@ -7,12 +7,14 @@
 
 namespace airdos {
 
+/// What part people have in the adjustment.
 enum class PeopleMode {
-  kOff,       ///< people are not looked at
+  kOff,       ///< people are ignored
   kMaskOnly,  ///< they only mask static features (the front end does); the same here as kOff
   kOn,        ///< their joints are unknowns of the adjustment
 };
 
+/// What the optimizer is asked to do.
 struct OptimizerOptions {
   PeopleMode people = PeopleMode::kOn;
   SlidingWindowOptions window;

@@ -51,7 +51,8 @@ int Play(const airdos::PlayerOptions& options, const airdos::CommonArguments& co
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Plays a recorded stereo sequence as LCM messages", "airdos-stereo-player");
+  airdos::CommandLine app("Plays a recorded stereo sequence as LCM messages",
+                          "airdos-stereo-player");
   const airdos::PlayerArguments arguments(&app);
   return airdos::RunProgram(argc, argv, &app,
                             [&] { return Play(arguments.Resolve(), arguments.common()); });

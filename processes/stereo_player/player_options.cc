@@ -26,40 +26,39 @@ OptionTable TableOf(PlayerOptions* options) {
   return table;
 }
 
-PlayerArguments::PlayerArguments(CLI::App* app) : input_(app) {
+PlayerArguments::PlayerArguments(CommandLine* app) : input_(app) {
   AddCommonOptions(PagesOf<PlayerOptions>(), app, &common_);
-  app->add_option("--first", options_.first, "First frame")->check(CLI::NonNegativeNumber);
-  app->add_option("--last", options_.last, "Last frame, included")->check(CLI::NonNegativeNumber);
-  app->add_option("--session", options_.session,
-                  "Session number; default: the wall clock in us; a log keeps its own unless it is "
-                  "given or --loop is");
-  app->add_option("--loop", options_.num_loops, "How often to play, each a session; 0: for ever")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  app->add_flag("--one-session", options_.is_one_session,
-                "With --loop: one long session, its times and image numbers go on");
+  app->Add("--first", &options_.first, "First frame").NotNegative();
+  app->Add("--last", &options_.last, "Last frame, included").NotNegative();
+  app->Add("--session", &options_.session,
+           "Session number; default: the wall clock in us; a log keeps its own unless it is "
+           "given or --loop is");
+  app->Add("--loop", &options_.num_loops, "How often to play, each a session; 0: for ever")
+      .ShowDefault()
+      .NotNegative();
+  app->AddFlag("--one-session", &options_.is_one_session,
+               "With --loop: one long session, its times and image numbers go on");
   AddInputCheckOptions(app, &options_.check);
-  app->add_option("--say-every", options_.say_every, "Say how far it is every so many frames")
-      ->check(CLI::NonNegativeNumber);
-  app->add_option("--pace", pace_, "lockstep: nothing is ever lost; realtime: like cameras")
-      ->capture_default_str()
-      ->check(OneOf({"lockstep", "realtime"}));
-  app->add_option("--rate", options_.rate, "realtime: speed relative to the recording")
-      ->capture_default_str()
-      ->check(CLI::Range(1e-3, 1e3));
-  app->add_option("--wait-for", wait_for_,
-                  "Processes that must be READY and keep up, separated by commas; none: nobody");
-  app->add_option("--frames-in-flight", frames_in_flight_, "lockstep: frames on their way at once")
-      ->check(CLI::Range(1, 1000));
-  app->add_option("--image-encoding", encoding_,
-                  "auto: files that fit unchanged, else JPEG; png: lossless, whatever the size")
-      ->capture_default_str()
-      ->check(OneOf({"auto", "jpeg", "png"}));
-  app->add_option("--without", without_,
-                  "keypoints, masks or both, separated by commas: leave these channels to "
-                  "airdos-person-detector");
-  AddFile("--write-log", &options_.write_log,
-          "Write an LCM log of exactly these messages instead of publishing them", app);
+  app->Add("--say-every", &options_.say_every, "Say how far it is every N frames").NotNegative();
+  app->Add("--pace", &pace_, "lockstep: nothing is ever lost; realtime: like cameras")
+      .ShowDefault()
+      .OneOf({"lockstep", "realtime"});
+  app->Add("--rate", &options_.rate, "realtime: speed relative to the recording")
+      .ShowDefault()
+      .Within(1e-3, 1e3);
+  app->Add("--wait-for", &wait_for_,
+           "Processes that must be READY and keep up, separated by commas; none: nobody");
+  app->Add("--frames-in-flight", &frames_in_flight_, "lockstep: frames on their way at once")
+      .Within(1, 1000);
+  app->Add("--image-encoding", &encoding_,
+           "auto: files that fit unchanged, else JPEG; png: lossless, whatever the size")
+      .ShowDefault()
+      .OneOf({"auto", "jpeg", "png"});
+  app->Add("--without", &without_,
+           "keypoints, masks or both, separated by commas: leave these channels to "
+           "airdos-person-detector");
+  app->AddFile("--write-log", &options_.write_log,
+               "Write an LCM log of exactly these messages instead of publishing them");
 }
 
 PlayerOptions PlayerArguments::Resolve() const {

@@ -1,7 +1,6 @@
 #ifndef AIRDOS_PROCESSES_STEREO_PLAYER_PLAYER_OPTIONS_H_
 #define AIRDOS_PROCESSES_STEREO_PLAYER_PLAYER_OPTIONS_H_
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -15,6 +14,8 @@
 
 namespace airdos {
 
+/// When the next frame is published: as soon as the processes have room for it (see LockstepGate),
+/// or at its capture time, like a camera.
 enum class PlayerPace { kLockstep, kRealtime };
 
 /// What the player is asked to do.
@@ -41,7 +42,7 @@ OptionTable TableOf(PlayerOptions* options);
 /// The command line, and where it says nothing the configuration file.
 class PlayerArguments {
  public:
-  explicit PlayerArguments(CLI::App* app);
+  explicit PlayerArguments(CommandLine* app);
   /// After parsing. Throws InputError.
   PlayerOptions Resolve() const;
   const CommonArguments& common() const { return common_; }

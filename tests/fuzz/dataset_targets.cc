@@ -193,7 +193,7 @@ std::vector<FuzzTarget> DatasetTargets() {
 std::vector<FuzzTarget> FuzzTargets() {
   std::vector<FuzzTarget> all;
   for (const auto& group : {NodeTargets(), MessageTargets(), FileTargets(), DatasetTargets(),
-                            PictureTargets(), EvaluationTargets()})
+                            PictureTargets(), EvaluationTargets(), CalibrationTargets()})
     all.insert(all.end(), group.begin(), group.end());
   return all;
 }

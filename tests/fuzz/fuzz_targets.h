@@ -24,12 +24,13 @@ struct FuzzTarget {
 std::vector<FuzzTarget> FuzzTargets();
 
 // By file of this folder.
-std::vector<FuzzTarget> NodeTargets();        ///< handlers of the processes
-std::vector<FuzzTarget> MessageTargets();     ///< message types, images, what listens to STATUS
-std::vector<FuzzTarget> FileTargets();        ///< logs, maps, configurations
-std::vector<FuzzTarget> DatasetTargets();     ///< data sets and their files
-std::vector<FuzzTarget> PictureTargets();     ///< images, masks, their names, the camera
-std::vector<FuzzTarget> EvaluationTargets();  ///< what airdos-evaluate reads
+std::vector<FuzzTarget> NodeTargets();         ///< handlers of the processes
+std::vector<FuzzTarget> MessageTargets();      ///< message types, images, what listens to STATUS
+std::vector<FuzzTarget> FileTargets();         ///< logs, maps, configurations
+std::vector<FuzzTarget> DatasetTargets();      ///< data sets and their files
+std::vector<FuzzTarget> PictureTargets();      ///< images, masks, their names, the camera
+std::vector<FuzzTarget> EvaluationTargets();   ///< what airdos-evaluate reads
+std::vector<FuzzTarget> CalibrationTargets();  ///< calibration files of other tools
 
 /// Further seeds of the target "messages": the first messages on each channel of a log that are
 /// small enough.

@@ -3,9 +3,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 
+#include "common/calibration/calib_json.h"
 #include "common/check/check_camera.h"
 #include "common/check/check_jpeg.h"
-#include "common/dataset/calib_json.h"
 #include "common/dataset/image_file.h"
 #include "common/dataset/image_names.h"
 #include "common/dataset/image_rows.h"

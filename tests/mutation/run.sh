@@ -237,7 +237,7 @@ run_mutant() {
   say "$(($2 + 1))/$num_mutants ${mutant_file[$2]}: '${mutant_from[$2]}' -> '${mutant_to[$2]}': ${verdict/$'\t'/, }" >&2
 }
 
-# run_worker NUMBER: every so many-th mutant. Neighbours in the lists are in one file: so each worker builds each file.
+# run_worker NUMBER: every N-th mutant. Neighbours in the lists are in one file: so each worker builds each file.
 run_worker() {
   local worker=$build/$1 i
   mkdir -p "$worker"

@@ -210,6 +210,35 @@ TEST_F(MapRecorderBooksTest, AFullDiskKeepsTheFirstChunks) {
   }
 }
 
+TEST_F(MapRecorderBooksTest, GroundTruthThatIsInTheMapMakesRoomForMore) {
+  MapRecorderOptions options = Options();
+  options.max_ground_truth = 2;
+  MapRecorderNode node(options);
+  const auto is_taken = [&node](std::int64_t seq, std::int64_t session) {
+    const std::int64_t num_before = node.channels().at(channel::kGroundTruth).num_rejected;
+    pose_t pose = {};
+    pose.seq = seq;
+    pose.session = session;
+    pose.utime = 100000 * seq;
+    pose.orientation[0] = 1;
+    pose.axes = pose_t::AXES_OPTICAL;
+    Send(channel::kGroundTruth, pose, &node);
+    return node.channels().at(channel::kGroundTruth).num_rejected == num_before;
+  };
+  EXPECT_TRUE(is_taken(0, 1));
+  EXPECT_TRUE(is_taken(1, 1));
+  EXPECT_FALSE(is_taken(2, 1));
+  SendFrame(MapRecorderNode::kGroundTruthLag + 1, 1, 1, &node);  // that of image 0 is written
+  EXPECT_TRUE(is_taken(2, 1));
+  EXPECT_FALSE(is_taken(3, 1));
+  SendFrame(0, 2, 0, &node);  // another session: what is left of the first one is written
+  SendFrame(1, 2, 1, &node);
+  CompleteAll(&node);
+  EXPECT_TRUE(is_taken(0, 2));
+  EXPECT_TRUE(is_taken(1, 2));
+  EXPECT_FALSE(is_taken(2, 2));
+}
+
 // Another program writes a whole chunk where the map will end: each chunk is good, the map is not.
 TEST_F(MapRecorderBooksTest, WhatWasAddedBehindTheEndIsNoticed) {
   {

@@ -102,7 +102,7 @@ TEST(OptimizerOptions, EveryKeyOfTheFileIsTested) {
 SyntheticScene BusyScene() {
   SyntheticSceneOptions options;
   options.num_frames = 18;
-  options.num_people = 4;
+  options.num_people = 2;
   options.max_static_per_frame = 25;
   options.speed_m_s = 3;
   options.joint_sigma_px = 0.5;

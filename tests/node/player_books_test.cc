@@ -283,6 +283,7 @@ TEST(PlayerLoopTest, GoesNoFasterThanReceiversBuffersAreEmptied) {
   constexpr double kMaxBytesPerSecond = 30e6;
   PlayerOptions options;
   options.pace = PlayerPace::kRealtime;
+  options.gate.wait_for.clear();
   LcmTransport transport("memq://");
   std::ostringstream said;
   const ProcessLog log("player", LogLevel::kInfo, LogStyle::kJournal, &said, nullptr);

@@ -84,25 +84,34 @@ double RenderedScene::Grey(std::size_t box, int axis, bool is_far_side,
 
 RenderedScene::Hit RenderedScene::Trace(const Eigen::Vector3d& origin_W,
                                         const Eigen::Vector3d& ray_W) const {
+  // The innermost loop of many tests, without functions of Eigen or the standard library, each of
+  // which a build with sanitizers calls and checks.
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double* origin = origin_W.data();
+  const double inverse[] = {1.0 / ray_W.x(), 1.0 / ray_W.y(), 1.0 / ray_W.z()};
   double nearest = kInfinity;
   std::size_t nearest_box = 0;
   int nearest_axis = 0;
-  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+  const Box* box = boxes_.data();
+  const std::size_t num_boxes = boxes_.size();
+  for (std::size_t i = 0; i < num_boxes; ++i, ++box) {
+    const double* min = box->min_W.data();
+    const double* max = box->max_W.data();
     double enter = -kInfinity;
     double leave = kInfinity;
     int enter_axis = 0;
     int leave_axis = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const double inverse = 1.0 / ray_W[axis];
-      const double to_min = (boxes_[i].min_W[axis] - origin_W[axis]) * inverse;
-      const double to_max = (boxes_[i].max_W[axis] - origin_W[axis]) * inverse;
-      if (std::min(to_min, to_max) > enter) {
-        enter = std::min(to_min, to_max);
+      const double to_min = (min[axis] - origin[axis]) * inverse[axis];
+      const double to_max = (max[axis] - origin[axis]) * inverse[axis];
+      const double first = to_max < to_min ? to_max : to_min;
+      const double last = to_max < to_min ? to_min : to_max;
+      if (first > enter) {
+        enter = first;
         enter_axis = axis;
       }
-      if (std::max(to_min, to_max) < leave) {
-        leave = std::max(to_min, to_max);
+      if (last < leave) {
+        leave = last;
         leave_axis = axis;
       }
     }
@@ -121,10 +130,11 @@ cv::Mat RenderedScene::RenderOne(const StereoCamera& camera, const Se3& T_W_C) c
   cv::Mat image(camera.height, camera.width, CV_8UC1);
   const Eigen::Matrix3d R_W_C = T_W_C.rotation.toRotationMatrix();
   for (int v = 0; v < camera.height; ++v) {
+    auto* row = image.ptr<std::uint8_t>(v);
     for (int u = 0; u < camera.width; ++u) {
       const Eigen::Vector3d ray_C((u - camera.cx_px) / camera.fx_px,
                                   (v - camera.cy_px) / camera.fy_px, 1);
-      image.at<std::uint8_t>(v, u) = ToGrey(Trace(T_W_C.translation, R_W_C * ray_C).grey);
+      row[u] = ToGrey(Trace(T_W_C.translation, R_W_C * ray_C).grey);
     }
   }
   return image;

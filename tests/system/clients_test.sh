@@ -203,9 +203,12 @@ in_a_network() {
   expect_same "$work/poses" "$work/poses_heard_in_python"
   expect_same "$work/poses" "$work/poses_driven_in_python"
   if [[ $has_jar == JAR ]]; then
-    sed 's/, .*//' "$work/poses" > "$work/positions"
-    grep '^image' "$work/java.out" | head -n "$num_pictures" > "$work/positions_heard_in_java"
-    expect_same "$work/positions" "$work/positions_heard_in_java"
+    # Java's LCM cannot ask for a larger buffer: on a busy machine it misses some.
+    sed 's/, .*//' "$work/poses" | sort > "$work/positions"
+    grep '^image' "$work/java.out" | sort -u > "$work/positions_heard_in_java"
+    comm -13 "$work/positions" "$work/positions_heard_in_java" > "$work/diff"
+    [[ ! -s $work/diff ]] || fail "Java heard what C++ did not: $(head -n 10 "$work/diff")"
+    (($(wc -l < "$work/positions_heard_in_java") >= num_pictures / 2)) || fail "Java heard little: $(cat "$work/java.out")"
   fi
 
   # Without a detector the drivers say that there is nobody, so that nobody is waited for.
@@ -222,6 +225,37 @@ in_a_network() {
     ! grep -q "deadline\|nothing on" "$work/$process.err" || fail "$process has waited in vain: $(cat "$work/$process.err")"
   done
 }
+# Raw pixels of this size would not get through receivers' default buffers.
+the_detectors_mask_is_a_small_png() {
+  python3 - "$work/examples" << 'PYTHON' || fail "person_detector.py: what becomes of a mask"
+import struct
+import sys
+import zlib
+
+sys.path.insert(0, sys.argv[1])
+import person_detector
+from airdos import channels, image_t
+
+WIDTH, HEIGHT = 640, 360
+mask = bytes((x // 9 + y // 7) % 3 for y in range(HEIGHT) for x in range(WIDTH))
+person_detector.detect = lambda image: ([[(1.0, 2.0, 0.5)] * 18], mask)
+image = image_t(utime=1, seq=2, session=3, width=WIDTH, height=HEIGHT)
+message = dict(person_detector.messages(channels.CAMERA_LEFT, image))[channels.PERSON_MASK]
+assert message.encoding == message.ENCODING_PNG, message.encoding
+assert len(message.encode()) < 128000, len(message.encode())
+png, at, chunks = bytes(message.data), 8, {}
+assert png[:8] == b"\x89PNG\r\n\x1a\n"
+while at < len(png):
+    (size,) = struct.unpack_from(">I", png, at)
+    body = png[at + 4 : at + 8 + size]
+    assert struct.unpack_from(">I", png, at + 8 + size) == (zlib.crc32(body),)
+    chunks[body[:4]] = body[4:]
+    at += size + 12
+assert chunks[b"IHDR"] == struct.pack(">IIBBBBB", WIDTH, HEIGHT, 8, 0, 0, 0, 0)  # 8 bit grey
+rows = zlib.decompress(chunks[b"IDAT"])
+assert b"".join(rows[y * (WIDTH + 1) + 1 : (y + 1) * (WIDTH + 1)] for y in range(HEIGHT)) == mask
+PYTHON
+}
 
 if [[ -n ${CLIENTS_TEST_WORK:-} ]]; then
   export PYTHONPATH=$prefix/lib/python3/dist-packages
@@ -234,6 +268,7 @@ the_contract_names_tests_that_exist
 components_are_apart
 documented_commands_build_everything
 export PYTHONPATH=$prefix/lib/python3/dist-packages
+the_detectors_mask_is_a_small_png
 write_pictures
 new_network=(unshare -n)
 "${new_network[@]}" true 2> /dev/null || new_network=(unshare -r -n)

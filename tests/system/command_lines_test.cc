@@ -51,6 +51,7 @@ class CommandLineTest : public testing::Test {
   /// With the program alone, and with each of its commands before the arguments.
   static std::vector<std::vector<std::string>> CommandsOf(const std::string& program) {
     if (program == "airdos-map") return {{}, {"info"}, {"export"}, {"plot"}};
+    if (program == "airdos-calibration") return {{}, {"show"}, {"convert"}, {"check"}};
     if (program == "airdos-evaluate")
       return {{}, {"trajectory"}, {"people"}, {"curve"}, {"speed"}, {"ablation"}};
     return {{}};
@@ -95,7 +96,7 @@ const std::set<std::string> kVocabulary = {
     "--estimate", "--ground-truth", "--times", "--people", "--joints", "--runs", "--solver"};
 
 TEST_F(CommandLineTest, EachHelpTextCanBeRead) {
-  ASSERT_GE(Programs().size(), 11u);
+  ASSERT_GE(Programs().size(), 13u);
   for (const std::string& program : Programs()) {
     for (std::vector<std::string> arguments : CommandsOf(program)) {
       const std::string title = program + (arguments.empty() ? "" : " " + arguments[0]);
@@ -110,7 +111,8 @@ TEST_F(CommandLineTest, EachHelpTextCanBeRead) {
         EXPECT_NE(answer.output.find("--version"), std::string::npos) << title;
       }
       const std::vector<HelpEntry> entries = EntriesOf(answer.output);
-      EXPECT_GE(entries.size(), is_command || program == "airdos-map" ? 1u : 2u) << title;
+      const bool is_only_commands = program == "airdos-map" || program == "airdos-calibration";
+      EXPECT_GE(entries.size(), is_command || is_only_commands ? 1u : 2u) << title;
       for (const HelpEntry& entry : entries) {
         const std::size_t letter = entry.text.find_first_not_of(" ");
         EXPECT_NE(letter, std::string::npos) << title << ": " << entry.name << " has no text";
@@ -200,6 +202,11 @@ TEST_F(CommandLineTest, MistypedCommandsAndChoicesAreAnswered) {
             "airdos-map: there is no command 'exprot'; did you mean 'export'?\n");
   EXPECT_EQ(Run("airdos-evaluate", {"trajectroy"}).errors,
             "airdos-evaluate: there is no command 'trajectroy'; did you mean 'trajectory'?\n");
+  EXPECT_EQ(Run("airdos-calibration", {"shwo", "x.yaml"}).errors,
+            "airdos-calibration: there is no command 'shwo'; did you mean 'show'?\n");
+  EXPECT_EQ(Run("airdos-calibration", {"convert", "x.yaml", "--to", "kalibir"}).errors,
+            "airdos-calibration: --to: 'kalibir' is none of kalibr, ros, opencv, euroc, orbslam3, "
+            "calib.json; did you mean 'kalibr'?\n");
   EXPECT_EQ(Run("airdos-replay", {"x", "--people", "mask-only"}).errors,
             "airdos-replay: --people: 'mask-only' is none of off, mask_only, on; did you mean "
             "'mask_only'?\n");

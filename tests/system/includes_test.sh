@@ -11,7 +11,7 @@ violations() {
   (cd "$root" && find common processes \( -name '*.h' -o -name '*.cc' \) -print0 | sort -z |
     xargs -0 --no-run-if-empty awk '
     BEGIN {
-      rank["util"] = 0; rank["config"] = 1; rank["geometry"] = 2; rank["human"] = 3
+      rank["util"] = 0; rank["config"] = 1; rank["geometry"] = 2; rank["human"] = rank["calibration"] = 3
       rank["features"] = rank["map"] = rank["dataset"] = rank["simulation"] = 4
       rank["evaluation"] = rank["perception"] = 4
       rank["optimization"] = rank["check"] = 5

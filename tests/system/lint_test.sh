@@ -151,11 +151,29 @@ the_same_local_name_is_no_mistake() {
   says out '4 units in 2 batches'
   ran 2 'clang-tidy --quiet'
   rm "$root"/common/util/{thing.h,three_too.cc}
+  # Programs are joined, too; so is a function with an attribute with a type of its name, but not one that macros of GoogleTest name.
+  unit main_one <<< $'int main() { return 1; }'
+  unit main_two <<< $'int main() {}'
+  printf '#pragma once\n\n// main() calls it.\n[[nodiscard]] int Ten();\n' > "$root/common/util/ten.h"
+  unit ten <<< $'#include "common/util/ten.h"\n\nint Ten() { return 10; }'
+  unit three <<< $'namespace {\nstruct Ten {\n  int a = 3;\n};\n}  // namespace\n\nint Three() { return Ten().a; }'
+  tidied 0
+  says out '6 units in 1 batches, 0 headers'
+  ran 1 'clang-tidy --quiet'
+  rm "$root"/common/util/{main_one,main_two,ten}.cc "$root/common/util/ten.h"
+  unit three <<< $'namespace {\nint Message() { return 3; }\n}  // namespace\n\nint Three() { return Message(); }'
+  unit six <<< $'namespace {\nint Message() { return 6; }\nint max() { return 6; }\n}  // namespace\n\nint Six() { return Message() + max(); }'
+  unit seven <<< $'#include <algorithm>\n\nnamespace {\nint max() { return 7; }\n}  // namespace\n\nint Seven() { return max() + std::max(7, 6); }'
+  tidied 0
+  says out '5 units in 2 batches, 0 headers'
+  ran 2 'clang-tidy --quiet'
+  rm "$root"/common/util/{six,seven}.cc
   # What the names do not tell, the compiler does: such a batch is halved, and that is remembered.
   unit four <<< $'#define SAME int kStart = 4;\nnamespace {\nconst SAME\n}  // namespace\n\nint Four() { return kStart; }'
   rm "$root/common/util/three.cc"
   tidied 0
   says out '0 findings'
+  says out ' batches (1 halved, which takes twice as long), '
   (($(started 'clang-tidy --quiet') > 1)) || fail "not halved: $(cat "$work/calls")"
   tidied 0
   ran 0 'clang-tidy --quiet'

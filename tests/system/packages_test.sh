@@ -140,6 +140,10 @@ each_command_is_completed() {
   completes airdos-replay --people m gives mask_only
   completes airdos-evaluate '' gives trajectory people curve speed ablation
   completes airdos-evaluate trajectory --pl gives --plot
+  completes airdos-calibration '' gives show convert check
+  completes airdos-calibration convert --to k gives kalibr
+  completes airdos-calibration check --bas gives --baseline-unit
+  completes airdos-calibration show logs/ro gives logs/road_crossing06.lcm
   completes airdos-evaluate trajectory --inverted e gives estimate
   completes airdos-frontend --config con gives config
   completes airdos-map-recorder --run-dir '' gives config lcmtypes logs scripts

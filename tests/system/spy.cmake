@@ -22,7 +22,7 @@ add_custom_target(spy_test_classes ALL DEPENDS ${spy_test_classes}/airdos/spy/Sp
 
 add_test(NAME spy_renderer_test COMMAND ${AIRDOS_JAVA} -Djava.awt.headless=true -Xmx256m -ea -cp ${spy_test_classpath}
                                         airdos.spy.SpyRendererTest)
-set_tests_properties(spy_renderer_test PROPERTIES LABELS system TIMEOUT 120)
+set_tests_properties(spy_renderer_test PROPERTIES LABELS system TIMEOUT ${AIRDOS_TEST_TIMEOUT_S})
 add_test(NAME spy_window_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/spy_window_test.sh ${spy_test_classpath}
                                       ${CMAKE_BINARY_DIR}/screenshots)
-set_tests_properties(spy_window_test PROPERTIES LABELS system TIMEOUT 180 SKIP_RETURN_CODE 77)
+set_tests_properties(spy_window_test PROPERTIES LABELS system TIMEOUT ${AIRDOS_TEST_TIMEOUT_S} SKIP_RETURN_CODE 77)

@@ -165,6 +165,9 @@ TEST_F(UserCases, CaseC06InputsOfAnotherKind) {
     ExpectRefused({"airdos-evaluate", "trajectory", "--estimate", tum, "--ground-truth", input},
                   input);
     ExpectRefused({"airdos-evaluate", "curve", "--runs", input}, input);
+    ExpectRefused({"airdos-calibration", "show", input}, input);
+    ExpectRefused({"airdos-calibration", "convert", input, "--to", "ros", "--out", Path("out")},
+                  input);
     ExpectRefused({"airdos-evaluate", "people", "--people", tum, "--joints", input, "--estimate",
                    tum, "--ground-truth", tum},
                   "");

@@ -1,6 +1,5 @@
 #include "common/optimization/window/track_noise.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -10,6 +9,8 @@
 #include <optional>
 #include <set>
 #include <vector>
+
+#include "common/geometry/covariance.h"
 
 namespace airdos {
 namespace {
@@ -39,7 +40,7 @@ std::optional<MeasuredPoint> Measured(const BundleProblem& problem,
   if (!p_C) return std::nullopt;
   const Eigen::Matrix3d J_inverse = problem.camera.ProjectStereoJacobian(*p_C).inverse();
   const Eigen::Matrix3d RJ = R * J_inverse;
-  return MeasuredPoint{T_W_C * *p_C, RJ * joint.covariance_px2 * RJ.transpose()};
+  return MeasuredPoint{T_W_C * *p_C, Propagated(RJ, joint.covariance_px2)};
 }
 
 std::vector<Sighting> BodySightings(const BundleProblem& problem,
@@ -72,8 +73,7 @@ Eigen::Matrix3d TurnBetween(const std::vector<Eigen::Vector3d>& before,
 }
 
 double LogDensity(const Eigen::Vector3d& error, const Eigen::Matrix3d& S, double largest_chi2) {
-  const Eigen::LDLT<Eigen::Matrix3d> ldlt(S);
-  const double chi2 = std::min(error.dot(ldlt.solve(error)), largest_chi2);
+  const double chi2 = std::min(SquaredMahalanobis(error, S), largest_chi2);
   return -0.5 * (chi2 + std::log(std::max(S.determinant(), 1e-60)));
 }
 
@@ -174,12 +174,12 @@ std::vector<Centre> Centres(const std::vector<Sighting>& sightings, double camer
     for (const auto& [index, point] : sighting.points) {
       const auto offset = offsets.find(index);
       if (offset == offsets.end()) continue;
-      const Eigen::Matrix3d weight = point.covariance_W.inverse();
+      const Eigen::Matrix3d weight = Inverse(point.covariance_W);
       information += weight;
       weighted += weight * (point.p_W - offset->second);
     }
     if (information.isZero()) continue;
-    const Eigen::Matrix3d covariance = information.inverse();
+    const Eigen::Matrix3d covariance = Inverse(information);
     centres.push_back({sighting.frame, sighting.time_s, covariance * weighted,
                        covariance + camera_sigma_m * camera_sigma_m * Eigen::Matrix3d::Identity()});
   }
@@ -204,7 +204,7 @@ class CentreFilter {
     const double sigma_m_s = sigma_m_s2 * step_s;
     P_.bottomRightCorner<3, 3>().diagonal().array() += sigma_m_s * sigma_m_s;
     x_ = F * x_;
-    P_ = F * P_ * F.transpose();
+    P_ = Propagated(F, P_);
     P_.topLeftCorner<3, 3>().diagonal().array() += step_sigma_m * step_sigma_m;
   }
 
@@ -215,7 +215,7 @@ class CentreFilter {
 
   void Update(const Centre& centre) {
     const Eigen::Matrix<double, 6, 3> gain =
-        P_.leftCols<3>() * InnovationCovariance(centre).inverse();
+        P_.leftCols<3>() * Inverse(InnovationCovariance(centre));
     x_ += gain * Innovation(centre);
     P_ -= (gain * P_.topRows<3>()).eval();
     P_ = 0.5 * (P_ + P_.transpose()).eval();
@@ -299,7 +299,7 @@ std::set<int> FindTrackBreaks(const TrackBreakOptions& options, const BundleProb
       filter.Predict(step_s, options.acceleration_m_s2 * std::sqrt(usual_step_s / step_s), 0);
       const Eigen::Vector3d innovation = filter.Innovation(centres[i]);
       const Eigen::Matrix3d S = filter.InnovationCovariance(centres[i]);
-      if (innovation.dot(S.ldlt().solve(innovation)) <= options.largest_chi2) {
+      if (SquaredMahalanobis(innovation, S) <= options.largest_chi2) {
         filter.Update(centres[i]);
         step_before_s = step_s;
         continue;

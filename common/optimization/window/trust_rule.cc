@@ -1,6 +1,6 @@
 #include "common/optimization/window/trust_rule.h"
 
-#include <Eigen/Cholesky>
+#include "common/geometry/covariance.h"
 
 namespace airdos {
 
@@ -19,7 +19,7 @@ bool TrustsPeople(const TrustOptions& options, int num_static_observations,
   const double largest_trace =
       options.max_relative_sigma * options.max_relative_sigma * P.topLeftCorner<3, 3>().trace();
   if (!(P_with.topLeftCorner<3, 3>().trace() <= largest_trace)) return false;
-  return shift.dot(P.ldlt().solve(shift)) <= options.max_shift_chi2;  // false for NaN
+  return SquaredMahalanobis(shift, P) <= options.max_shift_chi2;  // false for NaN
 }
 
 }  // namespace airdos

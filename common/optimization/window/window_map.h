@@ -22,7 +22,7 @@ struct WindowMapOptions {
   int max_key_frames = 60;            ///< in memory
   int forget_after_frames = 200;      ///< applies to a landmark that no kept frame sees
   double min_disparity_px = 0.5;      ///< below it an observation cannot start a landmark
-  /// An observation rejected in as many adjustments in a row is dropped for good.
+  /// An observation rejected in this many adjustments in a row is dropped for good.
   int max_rejections = 2;
 };
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "common/check/check_stereo.h"
+#include "common/util/words.h"
 #include "processes/node/check/check_log.h"
 #include "processes/node/check/check_log_survey.h"
 #include "processes/node/check/check_log_times.h"
@@ -49,9 +50,7 @@ void LogSurvey::ReportExtent(FindingList* findings) const {
                    std::to_string(num_bytes_skipped_) + " bytes are damaged, about " +
                        std::to_string(num_lost_) + " events lost");
   }
-  std::string outputs;
-  for (const std::string& name : all_channels_.Outputs())
-    outputs += (outputs.empty() ? "" : ", ") + name;
+  const std::string outputs = JoinWords(all_channels_.Outputs(), ", ");
   if (outputs.empty()) return;
   findings->Note("log.outputs", path_,
                  "contains outputs of a run as well (" + outputs +

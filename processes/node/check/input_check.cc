@@ -57,14 +57,14 @@ void CheckBeforeRun(const std::string& path, const std::string& calibration,
   for (const std::string& warning : warnings) say(warning);
 }
 
-void AddCalibrationOption(CLI::App* app, std::string* calibration) {
-  app->add_option("--calibration", *calibration,
-                  std::string("of a folder without one, by name: ") + kPublicCalibration +
-                      " is that of the public set");
+void AddCalibrationOption(CommandLine* app, std::string* calibration) {
+  app->Add("--calibration", calibration,
+           std::string("of a folder without one, by name: ") + kPublicCalibration +
+               " is that of the public set");
 }
 
-void AddInputCheckOptions(CLI::App* app, InputCheckOptions* options) {
-  app->add_flag("--no-check", options->is_off, "play the input without checking it first");
+void AddInputCheckOptions(CommandLine* app, InputCheckOptions* options) {
+  app->AddFlag("--no-check", &options->is_off, "play the input without checking it first");
   AddCalibrationOption(app, &options->calibration);
 }
 

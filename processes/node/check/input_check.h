@@ -1,11 +1,11 @@
 #ifndef AIRDOS_PROCESSES_NODE_CHECK_INPUT_CHECK_H_
 #define AIRDOS_PROCESSES_NODE_CHECK_INPUT_CHECK_H_
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 
 #include "common/check/check_input.h"
+#include "processes/node/command_line.h"
 
 namespace airdos {
 
@@ -24,9 +24,9 @@ struct InputCheckOptions {
   bool is_off = false;
   std::string calibration;  ///< SequenceOptions::calibration
 };
-void AddInputCheckOptions(CLI::App* app, InputCheckOptions* options);
+void AddInputCheckOptions(CommandLine* app, InputCheckOptions* options);
 /// Adds --calibration alone.
-void AddCalibrationOption(CLI::App* app, std::string* calibration);
+void AddCalibrationOption(CommandLine* app, std::string* calibration);
 
 }  // namespace airdos
 

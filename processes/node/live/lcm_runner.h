@@ -16,7 +16,9 @@
 
 namespace airdos {
 
+/// How a process runs its node, whatever the node computes.
 struct LcmRunnerOptions {
+  /// What a process does that cannot keep up with its source.
   enum class Pace {
     kLockstep,  ///< every frame is worked on; the source waits for FRAME_DONE
     kRealtime,  ///< whoever falls behind goes on with the newest complete frame

@@ -21,7 +21,7 @@ struct LogRecorderOptions {
   std::string path;
   std::string channels = ".*";  ///< regular expression (ECMAScript) of whole names
   bool inputs_only = false;     ///< of these, only what comes from outside (IsInputChannel)
-  double flush_s = 1;           ///< the disk is told to keep what came once in this time
+  double flush_s = 1;           ///< how often what came is forced to disk
   bool replaces_file = false;   ///< otherwise a file that exists already is bad input
 };
 

@@ -3,35 +3,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 
 #include "common/util/error.h"
 #include "common/util/output_files.h"
 #include "common/util/suggestion.h"
+#include "common/util/words.h"
 #include "processes/node/live/lcm_transport.h"
 #include "processes/node/live/process_log.h"
 
 namespace airdos {
-namespace {
-
-/// Prints the page and ends the program as --help does. What it would not heed is refused: it
-/// tells of the defaults.
-void AddPage(const std::string& name, const std::string& page, const std::string& help,
-             CLI::App* app) {
-  app->add_flag_callback(
-      name,
-      [name, page, app] {
-        for (const char* other : {"--config", "--set"}) {
-          if (app->count(other) > 0) throw CLI::ExcludesError(name, other);
-        }
-        std::cout << page;
-        throw CLI::Success();
-      },
-      help);
-}
-
-}  // namespace
-
 std::string ConfigFolder() {
   std::error_code ignored;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
@@ -41,35 +21,36 @@ std::string ConfigFolder() {
   return AIRDOS_SOURCE_CONFIG_DIR;
 }
 
-void AddLogLevel(std::string* level, CLI::App* app) {
-  app->add_option("--log-level", *level, "Omit lines on stderr below this level")
-      ->check(OneOf(LogLevelNames()))
-      ->capture_default_str();
+void AddLogLevel(std::string* level, CommandLine* app) {
+  app->Add("--log-level", level, "Omit lines on stderr below this level")
+      .OneOf(LogLevelNames())
+      .ShowDefault();
 }
 
-void AddCommonOptions(const OptionPages& pages, CLI::App* app, CommonArguments* arguments) {
+void AddCommonOptions(const OptionPages& pages, CommandLine* app, CommonArguments* arguments) {
   const std::string& config_name = pages.config_name;
   arguments->lcm_url = DefaultLcmUrl();
   arguments->renamed = pages.renamed;
   arguments->config_name = config_name;
   arguments->config_file = ConfigFolder() + "/" + config_name + ".yaml";
-  app->add_option("--lcm-url", arguments->lcm_url, "Where the other processes are (LCM URL)")
-      ->capture_default_str();
-  AddFile("--config", &arguments->config_file,
-          "YAML file with the options, or folder with " + config_name + ".yaml", app)
-      ->capture_default_str();
-  app->add_option("--set", arguments->overrides,
-                  "section.key=value: replaces one value of it (again for more); " + config_name +
-                      ": may stand before it, as for airdos-replay")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  AddFile("--resolved-config", &arguments->resolved_config,
-          "File to write all options to with the values in force", app);
-  AddPage("--print-config", pages.default_file,
-          "Print " + config_name + ".yaml with its comments, to start one's own from", app);
-  AddPage("--help-config", pages.reference,
-          "Print all keys for --config and --set: default, what is allowed, unit, meaning", app);
-  AddForce(&arguments->force, app);
+  app->Add("--lcm-url", &arguments->lcm_url, "Where the other processes are (LCM URL)")
+      .ShowDefault();
+  app->AddFile("--config", &arguments->config_file,
+               "YAML file with the options, or folder with " + config_name + ".yaml")
+      .ShowDefault();
+  app->AddRepeated("--set", &arguments->overrides,
+                   "section.key=value: replaces one value of it (again for more); " + config_name +
+                       ": may stand before it, as for airdos-replay");
+  app->AddFile("--resolved-config", &arguments->resolved_config,
+               "File to write all options to with the values in force");
+  const std::vector<std::string> unheeded = {"--config", "--set"};  // pages tell of the defaults
+  app->AddPage("--print-config", pages.default_file,
+               "Print " + config_name + ".yaml with its comments, to start one's own from",
+               unheeded);
+  app->AddPage("--help-config", pages.reference,
+               "Print all keys for --config and --set: default, what is allowed, unit, meaning",
+               unheeded);
+  app->AddForce(&arguments->force);
   AddLogLevel(&arguments->log_level, app);
 }
 
@@ -93,9 +74,7 @@ Assignment ParseAssignment(const std::string& text) {
   if (std::find(all.begin(), all.end(), process) == all.end()) {
     const std::string hint = DidYouMean(process, all);
     throw InputError("--set '" + text + "': there is no process '" + process + "'" +
-                     (hint.empty() ? "; there are frontend, human_tracker, optimizer, "
-                                     "map_recorder, person_detector, stereo_player"
-                                   : hint));
+                     (hint.empty() ? "; there are " + JoinWords(all, ", ") : hint));
   }
   return {process, text.substr(colon + 1)};
 }

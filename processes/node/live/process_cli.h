@@ -1,7 +1,6 @@
 #ifndef AIRDOS_PROCESSES_NODE_LIVE_PROCESS_CLI_H_
 #define AIRDOS_PROCESSES_NODE_LIVE_PROCESS_CLI_H_
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -24,12 +23,12 @@ struct CommonArguments {
 };
 
 /// --log-level, of every process.
-void AddLogLevel(std::string* level, CLI::App* app);
+void AddLogLevel(std::string* level, CommandLine* app);
 
 /// Adds --lcm-url, --config, --set, --resolved-config, --force, --log-level, and --print-config and
 /// --help-config, which print a page and end the program; the defaults are those of this
 /// installation.
-void AddCommonOptions(const OptionPages& pages, CLI::App* app, CommonArguments* arguments);
+void AddCommonOptions(const OptionPages& pages, CommandLine* app, CommonArguments* arguments);
 
 /// The folder with the YAML files: ../share/airdos/config next to an installed program, else that
 /// of the source tree.

@@ -41,23 +41,23 @@ int Run(const ProcessInfo& info, const CommonArguments& arguments, LcmRunnerOpti
 
 int RunNodeProcess(int argc, char** argv, const ProcessInfo& info) {
   using Pace = LcmRunnerOptions::Pace;
-  CLI::App app(info.description, info.program);
+  CommandLine app(info.description, info.program);
   CommonArguments arguments;
   AddCommonOptions(info.options, &app, &arguments);
   LcmRunnerOptions options;
   std::string pace = "lockstep";
-  app.add_option("--pace", pace, "lockstep: every frame is worked on; realtime: the newest one")
-      ->capture_default_str()
-      ->check(OneOf({"lockstep", "realtime"}));
-  CLI::Option* deadline =
-      app.add_option("--deadline-s", options.deadline_s,
-                     "A frame that lacks inputs for longer is completed without (s); default " +
-                         std::string("5 in lockstep, 0.2 in realtime"))
-          ->check(CLI::Range(1e-3, 1e6));
+  app.Add("--pace", &pace, "lockstep: every frame is worked on; realtime: the newest one")
+      .ShowDefault()
+      .OneOf({"lockstep", "realtime"});
+  const CommandOption deadline =
+      app.Add("--deadline-s", &options.deadline_s,
+              "A frame that lacks inputs for longer is completed without (s); default " +
+                  std::string("5 in lockstep, 0.2 in realtime"))
+          .Within(1e-3, 1e6);
   if (info.add_options) info.add_options(&app, arguments);
   return RunProgram(argc, argv, &app, [&] {
     options.pace = pace == "lockstep" ? Pace::kLockstep : Pace::kRealtime;
-    if (deadline->count() == 0) {
+    if (!deadline.is_given()) {
       options.deadline_s =
           options.pace == Pace::kLockstep ? kLockstepDeadline_s : kRealtimeDeadline_s;
     }

@@ -20,7 +20,7 @@ struct ProcessInfo {
   std::function<std::unique_ptr<Node>(ConfigReader*)> make_node;
   bool publishes_frame_done = false;
   /// Adds options of this process alone; may be empty. The arguments live as long as the process.
-  std::function<void(CLI::App*, const CommonArguments&)> add_options = nullptr;
+  std::function<void(CommandLine*, const CommonArguments&)> add_options = nullptr;
 };
 
 /// The whole main of a process that is one node: options, node, LCM, until SIGINT, SIGTERM or

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "common/util/words.h"
 #include "processes/node/log/event_log.h"
 #include "processes/node/message/channels.h"
 #include "processes/node/message/types_fingerprint.h"
@@ -113,10 +114,8 @@ std::vector<std::string> LogChannels::Outputs() const {
 }
 
 std::string LogChannels::ExplainMissing(const std::string& wanted) const {
-  std::string read;
-  for (const std::string& name : InputChannels()) read += (read.empty() ? "" : ", ") + name;
-  std::string text = "no message on " + wanted + "; the channels read are " + read +
-                     "; the log contains " + List();
+  std::string text = "no message on " + wanted + "; the channels read are " +
+                     JoinWords(InputChannels(), ", ") + "; the log contains " + List();
   const std::optional<std::string> like = LookAlike(wanted);
   if (like) {
     text += "; " + *like + " looks like " + wanted + ": publish it under exactly that name, and " +

@@ -1,5 +1,4 @@
 // airdos-check: checks whether a folder or a log can be used, before using it.
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -10,7 +9,7 @@
 #include "processes/node/live/program_cli.h"
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  airdos::CommandLine app(
       "Reports what is wrong with a recorded sequence or an LCM log before it is used: one line "
       "per "
       "finding. Exit code 0: it can be used; 1: there are errors; 2: wrong arguments.",
@@ -20,18 +19,18 @@ int main(int argc, char** argv) {
   airdos::CheckOptions options;
   const airdos::InputOptions input_options(&app);
   bool is_quick = false;
-  app.add_flag("--quick", is_quick, "only what replay and player check before they start");
-  app.add_flag("--all", options.all, "check the pictures of all frames");
+  app.AddFlag("--quick", &is_quick, "only what replay and player check before they start");
+  app.AddFlag("--all", &options.all, "check the pictures of all frames");
   airdos::AddCalibrationOption(&app, &options.calibration);
-  app.add_option("--max-frames", options.max_frames, "number of frames whose pictures are checked")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  app.add_option("--odometry-frames", options.odometry_frames,
-                 "frames of visual odometry to compare with the ground truth; 0: none")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
-  airdos::AddFile("--json", &json_path, "file to write the findings to", &app);
-  airdos::AddForce(&force, &app);
+  app.Add("--max-frames", &options.max_frames, "number of frames whose pictures are checked")
+      .Within(1, 1000000)
+      .ShowDefault();
+  app.Add("--odometry-frames", &options.odometry_frames,
+          "frames of visual odometry to compare with the ground truth; 0: none")
+      .Within(0, 1000)
+      .ShowDefault();
+  app.AddFile("--json", &json_path, "file to write the findings to");
+  app.AddForce(&force);
 
   return airdos::RunProgram(argc, argv, &app, [&] {
     const std::string& input = input_options.path();

@@ -19,6 +19,7 @@ struct Diagnosis {
   std::string what;  ///< the result, in words
   std::string mend;  ///< the command that fixes it; empty if there is none
 };
+/// In the order in which the tests were made.
 using Diagnoses = std::vector<Diagnosis>;
 
 bool HasFail(const Diagnoses& diagnoses);

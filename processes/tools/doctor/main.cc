@@ -1,6 +1,5 @@
 // airdos-doctor: tests whether this machine can run the processes, and says how to fix what is
 // wrong.
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -68,26 +67,25 @@ int Run(const Arguments& arguments) {
 }  // namespace airdos
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  airdos::CommandLine app(
       "Reports what on this machine prevents a run, one line per finding, with the command "
       "that fixes it. Exit code 0: nothing (warnings are allowed); 1: something; 2: wrong "
       "arguments.",
       "airdos-doctor");
   airdos::Arguments arguments;
-  app.add_option("--lcm-url", arguments.lcm_url, "LCM URL of the processes")->capture_default_str();
-  airdos::AddFolder("--run-dir", &arguments.run_dir, "folder for results", &app)
-      ->capture_default_str();
-  app.add_option("--round-trip", arguments.round_trip,
-                 "send and receive test messages: auto (not into a run), always, never")
-      ->check(airdos::OneOf({"auto", "always", "never"}))
-      ->capture_default_str();
-  app.add_option("--listen-s", arguments.listen_s, "time to listen to others (s)")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->capture_default_str();
-  app.add_option("--round-trip-s", arguments.round_trip_s, "time to send (s)")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->capture_default_str();
-  airdos::AddFile("--json", &arguments.json, "file to write the findings to", &app);
-  airdos::AddForce(&arguments.force, &app);
+  app.Add("--lcm-url", &arguments.lcm_url, "LCM URL of the processes").ShowDefault();
+  app.AddFolder("--run-dir", &arguments.run_dir, "folder for results").ShowDefault();
+  app.Add("--round-trip", &arguments.round_trip,
+          "send and receive test messages: auto (not into a run), always, never")
+      .OneOf({"auto", "always", "never"})
+      .ShowDefault();
+  app.Add("--listen-s", &arguments.listen_s, "time to listen to others (s)")
+      .Within(0.1, 3600.0)
+      .ShowDefault();
+  app.Add("--round-trip-s", &arguments.round_trip_s, "time to send (s)")
+      .Within(0.1, 3600.0)
+      .ShowDefault();
+  app.AddFile("--json", &arguments.json, "file to write the findings to");
+  app.AddForce(&arguments.force);
   return airdos::RunProgram(argc, argv, &app, [&] { return airdos::Run(arguments); });
 }

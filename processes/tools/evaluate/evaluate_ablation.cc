@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -55,25 +54,23 @@ void RunAblationCommand(AblationArguments arguments) {
 
 }  // namespace
 
-void AddAblationCommand(CLI::App* app) {
+void AddAblationCommand(CommandLine* app) {
   const auto arguments = std::make_shared<AblationArguments>();
-  CLI::App* const command = app->add_subcommand(
+  CommandLine command = app->AddCommand(
       "ablation", "The paper's table: bundle adjustment of simulated sequences, with and without");
   command
-      ->add_option("--groups", arguments->groups,
-                   "settings of the simulator (default: the paper's four groups)")
-      ->check(OneOf(SettingNames()));
-  command->add_flag("--do-no-harm", arguments->do_no_harm,
-                    "instead: how people affect the camera's errors, in every setting");
+      .Add("--groups", &arguments->groups,
+           "settings of the simulator (default: the paper's four groups)")
+      .OneOf(SettingNames());
+  command.AddFlag("--do-no-harm", &arguments->do_no_harm,
+                  "instead: how people affect the camera's errors, in every setting");
   command
-      ->add_option("--sequences", arguments->num_sequences,
-                   "of each group (default: 10; do-no-harm: 100)")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--seed", arguments->seed, "of each group's first sequence")
-      ->capture_default_str();
-  AddFile("--json", &arguments->json, "JSON file for all figures", command);
-  AddForce(&arguments->force, command);
-  command->callback([arguments] { RunAblationCommand(*arguments); });
+      .Add("--sequences", &arguments->num_sequences, "of each group (default: 10; do-no-harm: 100)")
+      .Positive();
+  command.Add("--seed", &arguments->seed, "of each group's first sequence").ShowDefault();
+  command.AddFile("--json", &arguments->json, "JSON file for all figures");
+  command.AddForce(&arguments->force);
+  command.OnGiven([arguments] { RunAblationCommand(*arguments); });
 }
 
 }  // namespace airdos

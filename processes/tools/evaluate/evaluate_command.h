@@ -1,8 +1,6 @@
 #ifndef AIRDOS_PROCESSES_TOOLS_EVALUATE_EVALUATE_COMMAND_H_
 #define AIRDOS_PROCESSES_TOOLS_EVALUATE_EVALUATE_COMMAND_H_
 
-#include <CLI/CLI.hpp>
-
 #include "common/evaluation/trajectory.h"
 #include "processes/node/live/program_cli.h"
 
@@ -11,11 +9,11 @@ namespace airdos {
 // The subcommands of airdos-evaluate. Each adds itself with its options and runs if it was given;
 // all throw InputError for input that cannot be used.
 
-void AddTrajectoryCommand(CLI::App* app);
-void AddPeopleCommand(CLI::App* app);
-void AddCurveCommand(CLI::App* app);
-void AddSpeedCommand(CLI::App* app);
-void AddAblationCommand(CLI::App* app);
+void AddTrajectoryCommand(CommandLine* app);
+void AddPeopleCommand(CommandLine* app);
+void AddCurveCommand(CommandLine* app);
+void AddSpeedCommand(CommandLine* app);
+void AddAblationCommand(CommandLine* app);
 
 /// Repeats warnings on standard error, since the table may go to a file.
 void SayWarnings(const Remarks& remarks);

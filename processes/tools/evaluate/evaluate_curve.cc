@@ -39,18 +39,19 @@ void RunCurve(const CurveArguments& arguments) {
 
 }  // namespace
 
-void AddCurveCommand(CLI::App* app) {
+void AddCurveCommand(CommandLine* app) {
   const auto arguments = std::make_shared<CurveArguments>();
-  CLI::App* const command = app->add_subcommand(
-      "curve", "When people help: errors against the number of static features");
-  AddFile("--runs", &arguments->runs,
-          "JSON lines as written by launch_scripts/benchmark/benchmark_people_help.sh, one per run",
-          command)
-      ->required();
-  AddFile("--json", &arguments->json, "JSON file for all figures", command);
-  AddFile("--plot", &arguments->plot, "PNG file for a plot of the curve", command);
-  AddForce(&arguments->force, command);
-  command->callback([arguments] { RunCurve(*arguments); });
+  CommandLine command =
+      app->AddCommand("curve", "When people help: errors against the number of static features");
+  command
+      .AddFile(
+          "--runs", &arguments->runs,
+          "JSON lines as written by launch_scripts/benchmark/benchmark_people_help.sh, one per run")
+      .Required();
+  command.AddFile("--json", &arguments->json, "JSON file for all figures");
+  command.AddFile("--plot", &arguments->plot, "PNG file for a plot of the curve");
+  command.AddForce(&arguments->force);
+  command.OnGiven([arguments] { RunCurve(*arguments); });
 }
 
 }  // namespace airdos

@@ -57,21 +57,21 @@ void RunPeople(const PeopleArguments& arguments) {
 
 }  // namespace
 
-void AddPeopleCommand(CLI::App* app) {
+void AddPeopleCommand(CommandLine* app) {
   const auto arguments = std::make_shared<PeopleArguments>();
-  CLI::App* const command =
-      app->add_subcommand("people", "Errors of people: joints, identities, segment lengths");
-  AddFile("--people", &arguments->people, "people.jsonl of a map", command)->required();
-  AddFile("--joints", &arguments->joints, "true joints: joints_gt.json, or its .gz", command)
-      ->required();
-  AddFile("--estimate", &arguments->estimate, "trajectory.tum of the same map", command)
-      ->required();
-  AddFile("--ground-truth", &arguments->ground_truth,
-          "TUM file of the true camera, optical axes, in the world of the true joints", command)
-      ->required();
-  AddFile("--json", &arguments->json, "JSON file for all figures", command);
-  AddForce(&arguments->force, command);
-  command->callback([arguments] { RunPeople(*arguments); });
+  CommandLine command =
+      app->AddCommand("people", "Errors of people: joints, identities, segment lengths");
+  command.AddFile("--people", &arguments->people, "people.jsonl of a map").Required();
+  command.AddFile("--joints", &arguments->joints, "true joints: joints_gt.json, or its .gz")
+      .Required();
+  command.AddFile("--estimate", &arguments->estimate, "trajectory.tum of the same map").Required();
+  command
+      .AddFile("--ground-truth", &arguments->ground_truth,
+               "TUM file of the true camera, optical axes, in the world of the true joints")
+      .Required();
+  command.AddFile("--json", &arguments->json, "JSON file for all figures");
+  command.AddForce(&arguments->force);
+  command.OnGiven([arguments] { RunPeople(*arguments); });
 }
 
 }  // namespace airdos

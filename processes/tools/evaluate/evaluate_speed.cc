@@ -37,17 +37,17 @@ void RunSpeed(const SpeedArguments& arguments) {
 
 }  // namespace
 
-void AddSpeedCommand(CLI::App* app) {
+void AddSpeedCommand(CommandLine* app) {
   const auto arguments = std::make_shared<SpeedArguments>();
-  CLI::App* const command = app->add_subcommand("speed", "Speed of the chain and its solver");
-  AddFile("--runs", &arguments->runs,
-          "JSON lines as written by launch_scripts/benchmark/benchmark_speed.sh, one per sequence",
-          command);
-  AddFile("--solver", &arguments->solver, "JSON of airdos_solver_benchmark", command);
-  AddFile("--json", &arguments->json, "JSON file for all figures", command);
-  AddFile("--plot", &arguments->plot, "PNG file for plots of how they scale", command);
-  AddForce(&arguments->force, command);
-  command->callback([arguments] { RunSpeed(*arguments); });
+  CommandLine command = app->AddCommand("speed", "Speed of the chain and its solver");
+  command.AddFile(
+      "--runs", &arguments->runs,
+      "JSON lines as written by launch_scripts/benchmark/benchmark_speed.sh, one per sequence");
+  command.AddFile("--solver", &arguments->solver, "JSON of airdos_solver_benchmark");
+  command.AddFile("--json", &arguments->json, "JSON file for all figures");
+  command.AddFile("--plot", &arguments->plot, "PNG file for plots of how they scale");
+  command.AddForce(&arguments->force);
+  command.OnGiven([arguments] { RunSpeed(*arguments); });
 }
 
 }  // namespace airdos

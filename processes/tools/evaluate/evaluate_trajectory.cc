@@ -60,42 +60,41 @@ void SayWarnings(const Remarks& remarks) {
   }
 }
 
-void AddTrajectoryCommand(CLI::App* app) {
+void AddTrajectoryCommand(CommandLine* app) {
   const auto arguments = std::make_shared<TrajectoryArguments>();
-  CLI::App* const command = app->add_subcommand("trajectory", "Errors of a camera trajectory");
-  AddFile("--estimate", &arguments->estimate,
-          "trajectory in optical axes: TUM, KITTI, EuRoC csv or TartanAir", command)
-      ->required();
-  AddFile("--ground-truth", &arguments->ground_truth, "true trajectory, likewise", command)
-      ->required();
-  AddFile("--times", &arguments->times,
-          "times for the rows of a file without times (KITTI), one line per row", command);
+  CommandLine command = app->AddCommand("trajectory", "Errors of a camera trajectory");
   command
-      ->add_option(
-          "--gt-axes", arguments->axes,
-          "axes of the ground truth: optical, ned, where right, down and forward lie (such "
-          "as y,-z,x), or auto: compares motions with the estimate's")
-      ->check([](const std::string& text) -> std::string {
+      .AddFile("--estimate", &arguments->estimate,
+               "trajectory in optical axes: TUM, KITTI, EuRoC csv or TartanAir")
+      .Required();
+  command.AddFile("--ground-truth", &arguments->ground_truth, "true trajectory, likewise")
+      .Required();
+  command.AddFile("--times", &arguments->times,
+                  "times for the rows of a file without times (KITTI), one line per row");
+  command
+      .Add("--gt-axes", &arguments->axes,
+           "axes of the ground truth: optical, ned, where right, down and forward lie (such "
+           "as y,-z,x), or auto: compares motions with the estimate's")
+      .Check([](const std::string& text) -> std::string {
         if (text == "auto" || GroundTruthAxes::Parse(text)) return "";
         return "'" + text + "' is none of auto, optical, ned, three axes such as y,-z,x";
       })
-      ->capture_default_str();
+      .ShowDefault();
   command
-      ->add_option("--inverted", arguments->inverted,
-                   "the file whose poses are T_C_W (as ORB-SLAM's Tcw) instead of T_W_C: estimate "
-                   "or ground-truth")
-      ->check(CLI::IsMember({"estimate", "ground-truth"}));
-  command->add_option("--max-diff", arguments->max_difference_s, "largest time difference (s)")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option(
-      "--frames", arguments->num_frames,
-      "number of images in the sequence, for the completeness (default: as many as the "
-      "ground truth has rows, or the estimate if the truth has a higher rate)");
-  AddFile("--json", &arguments->json, "JSON file for all figures", command);
-  AddFile("--plot", &arguments->plot, "PNG file for a plot of trajectories and errors", command);
-  AddForce(&arguments->force, command);
-  command->callback([arguments] { RunTrajectory(*arguments); });
+      .Add("--inverted", &arguments->inverted,
+           "the file whose poses are T_C_W (as ORB-SLAM's Tcw) instead of T_W_C: estimate "
+           "or ground-truth")
+      .OneOfFew({"estimate", "ground-truth"});
+  command.Add("--max-diff", &arguments->max_difference_s, "largest time difference (s)")
+      .NotNegative()
+      .ShowDefault();
+  command.Add("--frames", &arguments->num_frames,
+              "number of images in the sequence, for the completeness (default: as many as the "
+              "ground truth has rows, or the estimate if the truth has a higher rate)");
+  command.AddFile("--json", &arguments->json, "JSON file for all figures");
+  command.AddFile("--plot", &arguments->plot, "PNG file for a plot of trajectories and errors");
+  command.AddForce(&arguments->force);
+  command.OnGiven([arguments] { RunTrajectory(*arguments); });
 }
 
 }  // namespace airdos

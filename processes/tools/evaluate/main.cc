@@ -1,5 +1,4 @@
 // airdos-evaluate: measures how good an estimate is, given the truth.
-#include <CLI/CLI.hpp>
 #include <opencv2/core.hpp>
 
 #include "processes/node/live/program_cli.h"
@@ -7,9 +6,8 @@
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
-  CLI::App app("Measures how good an estimate is, given the truth", "airdos-evaluate");
-  app.fallthrough();
-  app.require_subcommand(1);
+  airdos::CommandLine app("Measures how good an estimate is, given the truth", "airdos-evaluate");
+  app.RequireCommand();
   airdos::AddTrajectoryCommand(&app);
   airdos::AddPeopleCommand(&app);
   airdos::AddCurveCommand(&app);

@@ -1,5 +1,4 @@
 // airdos-map: shows and exports the contents of a 4-D map.
-#include <CLI/CLI.hpp>
 #include <cinttypes>
 #include <cstdio>
 #include <string>
@@ -80,31 +79,31 @@ struct Arguments {
   bool force = false;
 };
 
-CLI::App* AddCommand(const std::string& name, const std::string& text, Arguments* arguments,
-                     CLI::App* app) {
-  CLI::App* const command = app->add_subcommand(name, text);
-  AddFile("INPUT", &arguments->input, "map.airdos", command)->required();
+CommandLine AddCommand(const std::string& name, const std::string& text, Arguments* arguments,
+                       CommandLine* app) {
+  CommandLine command = app->AddCommand(name, text);
+  command.AddFile("INPUT", &arguments->input, "map.airdos").Required();
   return command;
 }
 
 int Run(int argc, char** argv) {
-  CLI::App app("Shows and exports the contents of a 4-D map", "airdos-map");
-  app.require_subcommand(1);
-  app.fallthrough();
+  CommandLine app("Shows and exports the contents of a 4-D map", "airdos-map");
+  app.RequireCommand();
   Arguments arguments;
-  AddCommand("info", "Print what a map contains", &arguments, &app);
-  CLI::App* const export_command =
+  const CommandLine info_command =
+      AddCommand("info", "Print what a map contains", &arguments, &app);
+  CommandLine export_command =
       AddCommand("export", "Write trajectories, PLY and people of a map", &arguments, &app);
-  AddFolder("--out", &arguments.out, "folder to write to", export_command)->required();
-  AddForce(&arguments.force, export_command);
-  CLI::App* const plot_command =
+  export_command.AddFolder("--out", &arguments.out, "folder to write to").Required();
+  export_command.AddForce(&arguments.force);
+  CommandLine plot_command =
       AddCommand("plot", "Plot a map from above: camera, people, static points", &arguments, &app);
-  AddFile("--out", &arguments.out, "PNG file to write", plot_command)->required();
-  AddForce(&arguments.force, plot_command);
+  plot_command.AddFile("--out", &arguments.out, "PNG file to write").Required();
+  plot_command.AddForce(&arguments.force);
   return RunProgram(argc, argv, &app, [&] {
-    if (app.got_subcommand("info")) PrintInfo(arguments.input);
-    if (export_command->parsed()) Export(arguments.input, arguments.out, arguments.force);
-    if (plot_command->parsed()) Plot(arguments.input, arguments.out, arguments.force);
+    if (info_command.is_given()) PrintInfo(arguments.input);
+    if (export_command.is_given()) Export(arguments.input, arguments.out, arguments.force);
+    if (plot_command.is_given()) Plot(arguments.input, arguments.out, arguments.force);
     return 0;
   });
 }

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <iostream>
 
 #include "common/util/output_files.h"
@@ -9,23 +8,22 @@
 #include "processes/node/live/service_notifier.h"
 
 int main(int argc, char** argv) {
-  CLI::App app("Records LCM messages to an event log, without losing any.", "airdos-record");
+  airdos::CommandLine app("Records LCM messages to an event log, without losing any.",
+                          "airdos-record");
   airdos::LogRecorderOptions options;
   std::string lcm_url = airdos::DefaultLcmUrl();
-  app.add_option("--lcm-url", lcm_url, "LCM URL of the processes")->capture_default_str();
-  airdos::AddFile("--out", &options.path, "log to write; lcm-logplayer and airdos-replay read it",
-                  &app)
-      ->required();
-  app.add_option("--channels", options.channels, "regular expression of the channels")
-      ->capture_default_str();
-  app.add_flag("--inputs-only", options.inputs_only,
-               "only images and other external inputs, nothing that the processes computed from "
-               "them: such a log can be played to running processes");
-  app.add_option("--flush-s", options.flush_s, "interval between flushes to disk (s)")
-      ->check(CLI::Range(0.01, 1e6))
-      ->capture_default_str();
+  app.Add("--lcm-url", &lcm_url, "LCM URL of the processes").ShowDefault();
+  app.AddFile("--out", &options.path, "log to write; lcm-logplayer and airdos-replay read it")
+      .Required();
+  app.Add("--channels", &options.channels, "regular expression of the channels").ShowDefault();
+  app.AddFlag("--inputs-only", &options.inputs_only,
+              "only images and other external inputs, nothing that the processes computed from "
+              "them: such a log can be played to running processes");
+  app.Add("--flush-s", &options.flush_s, "interval between flushes to disk (s)")
+      .Within(0.01, 1e6)
+      .ShowDefault();
   // A recording cannot be repeated, so it is never marked as a file that may be replaced.
-  app.add_flag("--force", options.replaces_file, "replace the log if there is one");
+  app.AddFlag("--force", &options.replaces_file, "replace the log if there is one");
   std::string log_level = "info";
   airdos::AddLogLevel(&log_level, &app);
 

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <iostream>
 #include <limits>
@@ -18,7 +17,7 @@
 #include "processes/tools/replay/replay_setup.h"
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  airdos::CommandLine app(
       "Runs all processes in one, as fast as the machine allows, on a log or data set. Writes only "
       "what --out, --run-dir and --timing specify.",
       "airdos-replay");
@@ -37,44 +36,37 @@ int main(int argc, char** argv) {
   const airdos::InputOptions input(&app);
   airdos::InputCheckOptions check;
   airdos::AddInputCheckOptions(&app, &check);
-  airdos::AddFile("--out", &options.out_path, "log of what the processes publish", &app);
-  app.add_flag("--all", options.writes_inputs, "include the inputs in that log");
-  airdos::AddFolder("--run-dir", &setup.run_dir,
-                    "folder for map, trajectories, configurations; without it no map is recorded",
-                    &app);
-  airdos::AddFile("--config", &config_path,
-                  "folder with <process>.yaml, or one of these files [" + setup.config_dir + "]",
-                  &app);
-  airdos::AddFolder("--config-dir", &config_path, "older name of --config", &app)->group("");
-  app.add_option("--set", setup.overrides,
-                 "process:section.key=value (repeatable); the process may be omitted if "
-                 "only one has the key")
-      ->allow_extra_args(false);
-  app.add_option("--people", setup.people, "how people are used")
-      ->check(airdos::OneOf({"off", "mask_only", "on"}));
-  app.add_option("--masks", setup.masks, "whether pixels on people are excluded")
-      ->check(airdos::OneOf({"off", "on"}));
-  app.add_option("--first", first, "first image number");
-  app.add_option("--last", last, "last image number");
-  app.add_option("--loop", num_loops, "how often to play it, as one long session")
-      ->check(CLI::Range(1, 1000000));
-  app.add_flag("--from-features", setup.from_features,
-               "run only the optimizer and the map recorder, on the features and people that the "
-               "log holds (airdos-simulate)");
-  app.add_flag(
-         "--detect", setup.detects,
-         "run the person detector as well; keypoints and masks of the log or data set are not "
-         "used")
-      ->excludes("--from-features");
-  app.add_option("--threads", threads,
-                 "1: all in one; auto: one per process, if there are enough cores")
-      ->check(airdos::OneOf({"1", "auto"}))
-      ->capture_default_str();
-  airdos::AddFile("--timing", &timing_path, "JSON file for ms per frame of each process", &app);
-  airdos::AddForce(&setup.rules.force, &app);
-  app.add_flag("--no-progress", no_progress, "do not report progress");
-  app.add_flag("--digest", digest, "print the digests of the output channels only");
-  app.add_flag("--digest-only", digest_only, "print the digests of the log itself; run nothing");
+  app.AddFile("--out", &options.out_path, "log of what the processes publish");
+  app.AddFlag("--all", &options.writes_inputs, "include the inputs in that log");
+  app.AddFolder("--run-dir", &setup.run_dir,
+                "folder for map, trajectories, configurations; without it no map is recorded");
+  app.AddFile("--config", &config_path,
+              "folder with <process>.yaml, or one of these files [" + setup.config_dir + "]");
+  app.AddFolder("--config-dir", &config_path, "older name of --config").Hide();
+  app.Add("--set", &setup.overrides,
+          "process:section.key=value (repeatable); the process may be omitted if "
+          "only one has the key")
+      .OneEachTime();
+  app.Add("--people", &setup.people, "how people are used").OneOf({"off", "mask_only", "on"});
+  app.Add("--masks", &setup.masks, "whether pixels on people are excluded").OneOf({"off", "on"});
+  app.Add("--first", &first, "first image number");
+  app.Add("--last", &last, "last image number");
+  app.Add("--loop", &num_loops, "how often to play it, as one long session").Within(1, 1000000);
+  app.AddFlag("--from-features", &setup.from_features,
+              "run only the optimizer and the map recorder, on the features and people that the "
+              "log holds (airdos-simulate)");
+  app.AddFlag("--detect", &setup.detects,
+              "run the person detector as well; keypoints and masks of the log or data set are not "
+              "used")
+      .Excludes("--from-features");
+  app.Add("--threads", &threads, "1: all in one; auto: one per process, if there are enough cores")
+      .OneOf({"1", "auto"})
+      .ShowDefault();
+  app.AddFile("--timing", &timing_path, "JSON file for ms per frame of each process");
+  app.AddForce(&setup.rules.force);
+  app.AddFlag("--no-progress", &no_progress, "do not report progress");
+  app.AddFlag("--digest", &digest, "print the digests of the output channels only");
+  app.AddFlag("--digest-only", &digest_only, "print the digests of the log itself; run nothing");
 
   return airdos::RunProgram(argc, argv, &app, [&] {
     if (digest_only) {

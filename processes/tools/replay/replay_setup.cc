@@ -14,6 +14,7 @@
 #include "common/util/input_file.h"
 #include "common/util/output_folder.h"
 #include "common/util/suggestion.h"
+#include "common/util/words.h"
 #include "processes/frontend/frontend_node.h"
 #include "processes/human_tracker/human_tracker_node.h"
 #include "processes/map_recorder/map_recorder_node.h"
@@ -181,11 +182,8 @@ void SetConfig(const std::string& path, ReplaySetup* setup) {
   const std::string stem = fs::path(path).stem().string();
   if (std::find(names.begin(), names.end(), stem) == names.end()) {
     const std::string hint = DidYouMean(stem, names);
-    throw InputError(
-        "--config " + path +
-        ": the name does not tell which process it belongs to: frontend.yaml, "
-        "human_tracker.yaml, optimizer.yaml, map_recorder.yaml or person_detector.yaml" +
-        hint);
+    throw InputError("--config " + path + ": the name does not tell which process it belongs to: " +
+                     JoinWords(names, ".yaml, ") + ".yaml" + hint);
   }
   setup->config_file = path;
 }

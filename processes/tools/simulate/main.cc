@@ -1,6 +1,5 @@
 // airdos-simulate: writes a log of what frontend and human tracker would publish in a simulated
 // world.
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <iostream>
 #include <string>
@@ -11,7 +10,7 @@
 #include "processes/tools/simulate/simulated_log.h"
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  airdos::CommandLine app(
       "Simulates features and people, without images, and writes them as an LCM log that "
       "airdos-replay --from-features runs the optimizer on.",
       "airdos-simulate");
@@ -19,12 +18,10 @@ int main(int argc, char** argv) {
   std::uint64_t seed = 1;
   std::string out;
   bool force = false;
-  app.add_option("--setting", setting, "setting to simulate")
-      ->check(airdos::OneOf(airdos::SettingNames()))
-      ->capture_default_str();
-  app.add_option("--seed", seed, "seed of the random numbers")->capture_default_str();
-  airdos::AddFile("--out", &out, "log to write", &app)->required();
-  airdos::AddForce(&force, &app);
+  app.Add("--setting", &setting, "setting to simulate").OneOf(airdos::SettingNames()).ShowDefault();
+  app.Add("--seed", &seed, "seed of the random numbers").ShowDefault();
+  app.AddFile("--out", &out, "log to write").Required();
+  app.AddForce(&force);
 
   return airdos::RunProgram(argc, argv, &app, [&] {
     const airdos::OutputFiles outputs({out}, {{}, force});

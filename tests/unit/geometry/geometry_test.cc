@@ -3,6 +3,7 @@
 #include <limits>
 #include <random>
 
+#include "common/geometry/covariance.h"
 #include "common/geometry/se3.h"
 #include "common/geometry/stereo_camera.h"
 
@@ -16,6 +17,51 @@ Vector6d RandomTangent(std::mt19937* generator, double scale) {
   Vector6d delta;
   for (int i = 0; i < 6; ++i) delta[i] = normal(*generator);
   return delta;
+}
+
+TEST(MahalanobisTest, IsWhatOneWorksOutByHand) {
+  Eigen::Matrix3d covariance;
+  covariance << 4, 0, 0, 0, 2, 1, 0, 1, 2;  // the inverse of its lower block is [2 -1; -1 2] / 3
+  EXPECT_NEAR(SquaredMahalanobis(Eigen::Vector3d(2, 1, 3), covariance), 1 + 14.0 / 3, kExact);
+  Vector6d error;
+  error << 1, 2, 3, 4, 5, 6;
+  Matrix6d variances = Matrix6d::Zero();
+  variances.diagonal() << 1, 4, 9, 16, 25, 36;
+  EXPECT_NEAR(SquaredMahalanobis(error, variances), 6, kExact);
+  variances(3, 3) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(SquaredMahalanobis(error, variances) <= 6);
+}
+
+TEST(CovarianceTest, IsPropagatedByTheJacobian) {
+  Eigen::Matrix3d J;
+  J << 1, 2, 0, 0, 1, 0, 0, 0, 3;
+  const Eigen::Matrix3d S = Eigen::Vector3d(1, 4, 2).asDiagonal();
+  Eigen::Matrix3d expected;
+  expected << 17, 8, 0, 8, 4, 0, 0, 0, 18;
+  EXPECT_LT((Propagated(J, S) - expected).norm(), kExact);
+  Matrix6d J6 = Matrix6d::Identity();
+  J6.topLeftCorner<3, 3>() = J;
+  Matrix6d S6 = Matrix6d::Identity();
+  S6.topLeftCorner<3, 3>() = S;
+  S6(4, 4) = 5;
+  Matrix6d expected6 = Matrix6d::Identity();
+  expected6.topLeftCorner<3, 3>() = expected;
+  expected6(4, 4) = 5;
+  EXPECT_LT((Propagated(J6, S6) - expected6).norm(), kExact);
+  const Eigen::Matrix<double, 3, 6> upper = J6.topRows<3>();
+  EXPECT_LT((Propagated(upper, S6) - expected).norm(), kExact);
+  EXPECT_LT((Inverse(expected) * expected - Eigen::Matrix3d::Identity()).norm(), kExact);
+  EXPECT_LT((Inverse(expected6) * expected6 - Matrix6d::Identity()).norm(), kExact);
+}
+
+TEST(CovarianceTest, SolvesWhatIsPositive) {
+  Matrix6d H = Matrix6d::Identity();
+  H(0, 1) = H(1, 0) = 0.5;
+  Vector6d x;
+  x << 1, -2, 3, 4, 5, 6;
+  EXPECT_LT((SolvePositive(H, H * x).value() - x).norm(), kExact);
+  H(5, 5) = -1;
+  EXPECT_EQ(SolvePositive(H, x), std::nullopt);
 }
 
 TEST(Se3Test, BoxplusAndBoxminusAreInverse) {

@@ -15,6 +15,13 @@ TEST(WordsTest, WrapsAtTheWidthAndNotBefore) {
   EXPECT_EQ(WrapWords("", 10), Lines());
 }
 
+TEST(WordsTest, Joins) {
+  EXPECT_EQ(JoinWords({"a", "b c", "", "d"}, ", "), "a, b c, , d");
+  EXPECT_EQ(JoinWords({"", "a"}, ","), ",a");
+  EXPECT_EQ(JoinWords({"a"}, ", "), "a");
+  EXPECT_EQ(JoinWords({}, ", "), "");
+}
+
 TEST(WordsTest, PartsBetweenCommas) {
   EXPECT_EQ(SplitAtCommas("a,b c,,d,"), (Lines{"a", "b c", "d"}));
   EXPECT_EQ(SplitAtCommas(""), Lines());

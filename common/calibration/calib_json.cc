@@ -1,4 +1,4 @@
-#include "common/dataset/calib_json.h"
+#include "common/calibration/calib_json.h"
 
 #include <algorithm>
 #include <cctype>
@@ -9,9 +9,10 @@
 #include <tuple>
 #include <vector>
 
-#include "common/dataset/camera_causes.h"
-#include "common/dataset/sequence_files.h"
+#include "common/calibration/camera_causes.h"
+#include "common/calibration/camera_matrix.h"
 #include "common/util/error.h"
+#include "common/util/input_file.h"
 
 namespace airdos {
 namespace {
@@ -61,11 +62,7 @@ std::string ExplainJson(const std::string& text, std::size_t byte) {
 }
 
 nlohmann::json ParseJson(const std::string& path) {
-  const std::vector<std::uint8_t> bytes = ReadBytes(path);
-  if (bytes.size() > kMaxJsonBytes) {
-    throw InputError(path + ": holds more than " + std::to_string(kMaxJsonBytes) + " bytes");
-  }
-  const std::string text(bytes.begin(), bytes.end());
+  const std::string text = ReadWholeFile(path, kMaxJsonBytes);
   try {
     nlohmann::json json = nlohmann::json::parse(text);
     if (!json.is_object()) {
@@ -188,6 +185,13 @@ void CheckSize(const nlohmann::json& json, const std::string& path, std::pair<in
 }
 
 }  // namespace
+
+std::pair<int, int> ReadCalibJsonSize(const std::string& path) {
+  const nlohmann::json json = ParseJson(path);
+  if (!json.contains("width") || !json.contains("height")) return {0, 0};
+  return ToImageSize(ReadNumber(json, path, "width"), ReadNumber(json, path, "height"),
+                     path + ": keys 'width' and 'height'");
+}
 
 StereoCamera ReadCalibJson(const std::string& path, std::pair<int, int> size) {
   const nlohmann::json json = ParseJson(path);

@@ -1,4 +1,4 @@
-#include "common/dataset/camera_causes.h"
+#include "common/calibration/camera_causes.h"
 
 #include <cmath>
 #include <utility>

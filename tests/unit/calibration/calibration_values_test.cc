@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
-#include "common/dataset/calib_json.h"
-#include "common/dataset/camera_causes.h"
+#include "common/calibration/calib_json.h"
+#include "common/calibration/camera_causes.h"
 #include "common/dataset/kitti_calibration.h"
 #include "common/dataset/oxts.h"
 #include "common/dataset/sequence_files.h"

@@ -1,5 +1,5 @@
-#ifndef AIRDOS_COMMON_DATASET_CALIB_JSON_H_
-#define AIRDOS_COMMON_DATASET_CALIB_JSON_H_
+#ifndef AIRDOS_COMMON_CALIBRATION_CALIB_JSON_H_
+#define AIRDOS_COMMON_CALIBRATION_CALIB_JSON_H_
 
 #include <string>
 #include <utility>
@@ -13,10 +13,14 @@ namespace airdos {
 /// not JSON, or the key and the likely cause if the numbers are not those of a camera.
 StereoCamera ReadCalibJson(const std::string& path, std::pair<int, int> size);
 
+/// The size (width, height in px) that a calib.json says, or {0, 0} if it says none. Throws as
+/// ReadCalibJson() does.
+std::pair<int, int> ReadCalibJsonSize(const std::string& path);
+
 /// The format of a calib.json, for messages.
 inline constexpr char kCalibJsonForm[] =
     R"({"fx": .., "fy": .., "cx": .., "cy": .., "baseline_m": ..} (px, m))";
 
 }  // namespace airdos
 
-#endif  // AIRDOS_COMMON_DATASET_CALIB_JSON_H_
+#endif  // AIRDOS_COMMON_CALIBRATION_CALIB_JSON_H_

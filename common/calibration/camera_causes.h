@@ -1,5 +1,5 @@
-#ifndef AIRDOS_COMMON_DATASET_CAMERA_CAUSES_H_
-#define AIRDOS_COMMON_DATASET_CAMERA_CAUSES_H_
+#ifndef AIRDOS_COMMON_CALIBRATION_CAMERA_CAUSES_H_
+#define AIRDOS_COMMON_CALIBRATION_CAMERA_CAUSES_H_
 
 #include <optional>
 #include <string>
@@ -30,4 +30,4 @@ std::string WhyNoCamera(const StereoCamera& camera);
 
 }  // namespace airdos
 
-#endif  // AIRDOS_COMMON_DATASET_CAMERA_CAUSES_H_
+#endif  // AIRDOS_COMMON_CALIBRATION_CAMERA_CAUSES_H_
