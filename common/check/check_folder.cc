@@ -114,8 +114,12 @@ class FolderInput : public CheckedInput {
       pictures.where_left = files.left_image;
       pictures.where_right = files.right_image;
       pictures.where_mask = files.person_mask;
-      pictures.left = ReadPicture(files.left_image, range_, findings);
-      pictures.right = ReadPicture(files.right_image, range_, findings);
+      if (sequence_->has_camera_files()) {
+        pictures.left = ReadPicture(files.left_image, range_, findings);
+        pictures.right = ReadPicture(files.right_image, range_, findings);
+      } else {
+        LoadMade(frame, &pictures, findings);
+      }
       if (fs::exists(files.person_mask)) pictures.mask = ReadMask(files.person_mask, findings);
       FindingList ignored;  // CheckKeypoints() has reported them
       pictures.people_left = ReadPeople(files.keypoints_left, &ignored);
@@ -140,6 +144,19 @@ class FolderInput : public CheckedInput {
   void set_range(const SixteenBitRange& range) { range_ = range; }
 
  private:
+  /// Images that are made from files.
+  void LoadMade(std::size_t frame, CheckedPictures* pictures, FindingList* findings) const {
+    ReadOrSay("images.file", pictures->where_left, findings, [&] {
+      const SequenceFrame loaded = sequence_->Load(frame);
+      pictures->left =
+          DecodePicture(loaded.left_image_file, pictures->where_left, PictureColor::kGrey, range_)
+              .pixels;
+      pictures->right =
+          DecodePicture(loaded.right_image_file, pictures->where_right, PictureColor::kGrey, range_)
+              .pixels;
+      return true;
+    });
+  }
   std::string folder_;
   std::unique_ptr<StereoSequence> sequence_;
   SixteenBitRange range_;

@@ -8,6 +8,7 @@
 #include "common/dataset/file_name.h"
 #include "common/dataset/image_names.h"
 #include "common/dataset/kitti_tracking_sequence.h"
+#include "common/dataset/recording/euroc_sequence.h"
 #include "common/dataset/stereo_sequence.h"
 #include "common/util/error.h"
 
@@ -225,7 +226,7 @@ std::string ExplainOtherLayout(const std::string& folder) {
   const std::string wanted =
       "image_0 and image_1 with rectified images, calib.json and times.txt are expected";
   if (has("mav0/cam0/data") || has("cam0/data")) {
-    return "this is EuRoC's layout, whose images are not rectified; " + wanted;
+    return "this is EuRoC's layout, but cam0/data and cam1/data are not both there";
   }
   if (has("image_00/data") || has("image_02/data")) {
     return "this is KITTI raw; make image_0 and image_1 from image_00/data and image_01/data, and "
@@ -269,6 +270,7 @@ std::vector<UnreadFiles> FindUnreadFiles(const std::string& folder) {
   std::vector<UnreadFiles> unread;
   for (const ReadFolder& read : ReadFolders(folder)) FindInReadFolder(read, &unread);
   if (IsKittiTrackingSequence(folder)) return unread;  // its neighbours are other sequences
+  if (IsEurocSequence(folder)) return unread;          // its neighbours are other sensors
   FindOtherFolders(folder, &unread);
   FindOtherFiles(folder, &unread);
   return unread;

@@ -133,10 +133,17 @@ const Unit* UnitOf(const std::vector<std::uint64_t>& numbers) {
 
 }  // namespace
 
+std::vector<std::string> ListImageFiles(const std::string& folder) {
+  return ListFiles(folder, ImageEndings());
+}
+
 ImageNames ListImages(const std::string& folder) {
+  return OrderImages(folder, ListImageFiles(folder));
+}
+
+ImageNames OrderImages(const std::string& folder, std::vector<std::string> names) {
   ImageNames result;
   result.folder = folder;
-  std::vector<std::string> names = ListFiles(folder, ImageEndings());
   std::vector<std::string> strays = TakeHidden(&names);
   if (names.empty()) FailWithoutImages(folder);
   std::vector<NameSeries> groups = GroupNames(names);
