@@ -247,6 +247,7 @@ AIRDOS_ADD(double);
 AIRDOS_ADD(std::string);
 AIRDOS_ADD(std::vector<std::string>);
 AIRDOS_ADD(std::optional<int>);
+AIRDOS_ADD(std::optional<double>);
 AIRDOS_ADD(std::optional<std::int64_t>);
 AIRDOS_ADD(std::optional<std::string>);
 #undef AIRDOS_ADD

@@ -1,7 +1,9 @@
 #include <iostream>
 #include <memory>
 #include <opencv2/core/utility.hpp>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "common/util/output_files.h"
 #include "common/util/version.h"
@@ -18,15 +20,22 @@ namespace {
 
 void Check(const airdos::PlayerOptions& options, const airdos::ProcessLog& log) {
   if (options.check.is_off) return;
-  airdos::CheckBeforeRun(options.data, options.check.calibration,
-                         [&log](const std::string& line) { log.Relay(line); });
+  const auto say = [&log](const std::string& line) { log.Relay(line); };
+  if (options.recording.is_given()) {
+    airdos::CheckRecordingBeforeRun(*options.recording.Open(), say);
+  } else {
+    airdos::CheckBeforeRun(options.data, options.check.calibration, say);
+  }
 }
 
 int Play(const airdos::PlayerOptions& options, const airdos::CommonArguments& common) {
   airdos::InstallStopSignals();
   cv::setNumThreads(1);
   const airdos::ProcessLog log("airdos-stereo-player", airdos::ParseLogLevel(common.log_level));
-  const airdos::OutputFiles outputs({options.write_log}, {{options.data}, common.force});
+  const std::vector<std::string> inputs = options.recording.is_given()
+                                              ? options.recording.paths()
+                                              : std::vector<std::string>{options.data};
+  const airdos::OutputFiles outputs({options.write_log}, {inputs, common.force});
   const std::int64_t session = options.session.value_or(airdos::WallClock_us());
   // Opened before anything is published, so that a wrong path is reported first.
   std::unique_ptr<airdos::FrameSource> first = airdos::OpenPlayerSource(options, session);

@@ -65,6 +65,10 @@ std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std:
                                           options.num_loops);
   }
   const std::int64_t last = options.last.value_or(std::numeric_limits<std::int64_t>::max());
+  if (options.recording.is_given()) {
+    return std::make_unique<DatasetSource>(options.recording.Open(), options.recording.name(),
+                                           options.first, last, session, options.image);
+  }
   if (std::filesystem::is_directory(options.data)) {
     return std::make_unique<DatasetSource>(options.data, options.first, last, session,
                                            options.image, options.check.calibration);
@@ -164,7 +168,7 @@ void PlayerLoop::WaitForTime(const Header& header) {
     }
     gap_s = 0;
   }
-  pace_ = {pace_->first + gap_s / options_.rate, header.utime};
+  pace_ = {pace_->first + gap_s / options_.speed, header.utime};
   for (double left_s = pace_->first - SteadyClock_s(); left_s > 0 && !StopRequested();
        left_s = pace_->first - SteadyClock_s()) {
     Listen(std::min(kPollTimeout_ms, static_cast<int>(1e3 * std::min(left_s, 1.0)) + 1));

@@ -38,12 +38,13 @@ PlayerArguments::PlayerArguments(CommandLine* app) : input_(app) {
       .NotNegative();
   app->AddFlag("--one-session", &options_.is_one_session,
                "With --loop: one long session, its times and image numbers go on");
+  options_.recording.AddTo(app);
   AddInputCheckOptions(app, &options_.check);
   app->Add("--say-every", &options_.say_every, "Say how far it is every N frames").NotNegative();
   app->Add("--pace", &pace_, "lockstep: nothing is ever lost; realtime: like cameras")
       .ShowDefault()
       .OneOf({"lockstep", "realtime"});
-  app->Add("--rate", &options_.rate, "realtime: speed relative to the recording")
+  app->Add("--speed", &options_.speed, "realtime: speed relative to the recording")
       .ShowDefault()
       .Within(1e-3, 1e3);
   app->Add("--wait-for", &wait_for_,
@@ -64,7 +65,10 @@ PlayerArguments::PlayerArguments(CommandLine* app) : input_(app) {
 PlayerOptions PlayerArguments::Resolve() const {
   using Encoding = ImagePackerOptions::Encoding;
   PlayerOptions options = options_;
-  options.data = input_.path();
+  InputOptions input = input_;
+  options.recording.Settle(&input);
+  if (!options.recording.is_given()) options.data = input.path();
+  options.check.calibration = options.recording.named_calibration();
   if (options.is_one_session && options.num_loops == 0)
     throw InputError("--one-session needs a --loop that ends");
   if (!options.write_log.empty() && options.num_loops != 1 && !options.is_one_session)

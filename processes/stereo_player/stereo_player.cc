@@ -77,6 +77,12 @@ StereoPlayer::StereoPlayer(const StereoSequence* sequence, std::int64_t session,
                            const ImagePackerOptions& options)
     : sequence_(sequence), session_(session), packer_(options) {}
 
+std::vector<std::string> StereoPlayer::TakeNotes() {
+  std::vector<std::string> notes = sequence_->TakeLateNotes();
+  for (std::string& note : packer_.TakeNotes()) notes.push_back(std::move(note));
+  return notes;
+}
+
 bool StereoPlayer::IsCalibrationDue(std::int64_t utime) {
   if (calibration_utime_ && utime >= *calibration_utime_ &&
       utime - *calibration_utime_ < kCalibrationPeriod_us) {
@@ -101,7 +107,9 @@ Envelope StereoPlayer::Calibration(const Header& header) const {
 }
 
 StereoPlayer::Frame StereoPlayer::Load(std::size_t index) {
-  SequenceFrame data = sequence_->Load(index);
+  std::optional<SequenceFrame> loaded = sequence_->TryLoad(index);
+  if (!loaded) return {};
+  SequenceFrame& data = *loaded;
   Frame frame;
   frame.header = {data.utime, static_cast<std::int64_t>(index), session_};
   std::vector<Envelope>& messages = frame.messages;

@@ -84,7 +84,7 @@ replay_again_is_another_session() {
   run 0 replay_log
   run 0 replay_log --speed 2.5
   ran 1 "^lcm-logplayer"
-  ran 1 "^airdos-stereo-player --log $log --session [0-9]{16} --no-check --lcm-url udpm://.* --pace realtime --rate 2.5\$"
+  ran 1 "^airdos-stereo-player --log $log --session [0-9]{16} --no-check --lcm-url udpm://.* --pace realtime --speed 2.5\$"
   run 0 replay_log --speed 0.0
   ran 1 '--pace lockstep$'
   (($(sed -n 's/.*--session \([0-9]*\).*/\1/p' "$work/calls" | sort -u | wc -l) == 2)) || fail "sessions: $(cat "$work/calls")"

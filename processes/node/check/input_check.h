@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/check/check_input.h"
+#include "common/dataset/recording/rectified_sequence.h"
 #include "processes/node/command_line.h"
 
 namespace airdos {
@@ -19,11 +20,16 @@ FindingList CheckInput(const std::string& path, const CheckOptions& options);
 void CheckBeforeRun(const std::string& path, const std::string& calibration,
                     const std::function<void(const std::string&)>& say);
 
+/// The same for a recording: whether its calibration fits the first images (JudgeRigCheck()).
+void CheckRecordingBeforeRun(const RectifiedSequence& sequence,
+                             const std::function<void(const std::string&)>& say);
+
 /// --no-check and --calibration of a program that plays an input.
 struct InputCheckOptions {
   bool is_off = false;
   std::string calibration;  ///< SequenceOptions::calibration
 };
+/// Adds --no-check alone.
 void AddInputCheckOptions(CommandLine* app, InputCheckOptions* options);
 /// Adds --calibration alone.
 void AddCalibrationOption(CommandLine* app, std::string* calibration);

@@ -17,6 +17,9 @@ class InputOptions {
   explicit InputOptions(CommandLine* line);
   /// Valid after parsing. Throws InputError if it was given not at all or more than once.
   const std::string& path() const;
+  bool is_given() const { return !input_.empty() || !data_.empty() || !log_.empty(); }
+  /// For what has been parsed as the word of another option.
+  void Give(const std::string& path) { input_ = path; }
 
  private:
   std::string input_;

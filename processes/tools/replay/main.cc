@@ -8,8 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "common/util/error.h"
 #include "processes/node/check/input_check.h"
 #include "processes/node/live/process_cli.h"
+#include "processes/node/live/recording_cli.h"
 #include "processes/node/log/looped_source.h"
 #include "processes/node/log/partial_source.h"
 #include "processes/tools/progress/progress_bar.h"
@@ -33,7 +35,9 @@ int main(int argc, char** argv) {
   bool digest = false;
   bool digest_only = false;
   setup.config_dir = airdos::ConfigFolder();
-  const airdos::InputOptions input(&app);
+  airdos::InputOptions input(&app);
+  airdos::RecordingArguments recording;
+  recording.AddTo(&app);
   airdos::InputCheckOptions check;
   airdos::AddInputCheckOptions(&app, &check);
   app.AddFile("--out", &options.out_path, "log of what the processes publish");
@@ -69,6 +73,11 @@ int main(int argc, char** argv) {
   app.AddFlag("--digest-only", &digest_only, "print the digests of the log itself; run nothing");
 
   return airdos::RunProgram(argc, argv, &app, [&] {
+    recording.Settle(&input);
+    check.calibration = recording.named_calibration();
+    if (recording.is_given() && (digest_only || setup.from_features)) {
+      throw airdos::InputError("--digest-only and --from-features are for logs");
+    }
     if (digest_only) {
       std::cout << airdos::FormatDigests(airdos::DigestLog(input.path()));
       return 0;
@@ -80,7 +89,9 @@ int main(int argc, char** argv) {
       std::cerr << "airdos-replay: " << line << std::endl;
     };
     const auto open = [&] {
-      auto whole = airdos::OpenFrameSource(input.path(), first, last, inputs, check.calibration);
+      auto whole = recording.is_given() ? airdos::OpenRecordingSource(recording, first, last)
+                                        : airdos::OpenFrameSource(input.path(), first, last, inputs,
+                                                                  check.calibration);
       if (!setup.detects) return whole;
       return std::unique_ptr<airdos::FrameSource>(std::make_unique<airdos::PartialSource>(
           std::move(whole), airdos::ChannelsOfPeople("--detect", {"keypoints", "masks"})));
@@ -90,11 +101,16 @@ int main(int argc, char** argv) {
     std::vector<std::string> remarks;
     for (const std::string& note : source.TakeNotes()) remarks.push_back("note: " + note);
     if (!check.is_off && !setup.from_features) {
-      airdos::CheckBeforeRun(input.path(), check.calibration,
-                             [&](const std::string& line) { remarks.push_back(line); });
+      const auto keep = [&](const std::string& line) { remarks.push_back(line); };
+      if (recording.is_given()) {
+        airdos::CheckRecordingBeforeRun(*recording.Open(), keep);
+      } else {
+        airdos::CheckBeforeRun(input.path(), check.calibration, keep);
+      }
     }
     if (!config_path.empty()) airdos::SetConfig(config_path, &setup);
-    setup.rules.inputs = {input.path()};
+    setup.rules.inputs =
+        recording.is_given() ? recording.paths() : std::vector<std::string>{input.path()};
     setup.outputs = {options.out_path, timing_path};
     const airdos::ReplayNodes replay = airdos::PrepareReplay(setup);
     for (const std::string& remark : remarks) say(remark);

@@ -247,4 +247,10 @@ std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, std::int64
   return std::make_unique<LogSource>(path, first, last, inputs);
 }
 
+std::unique_ptr<FrameSource> OpenRecordingSource(const RecordingArguments& recording,
+                                                 std::int64_t first, std::int64_t last) {
+  return std::make_unique<DatasetSource>(recording.Open(), recording.name(), first, last, kSession,
+                                         ImagePackerOptions());
+}
+
 }  // namespace airdos

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/util/output_files.h"
+#include "processes/node/live/recording_cli.h"
 #include "processes/node/log/log_source.h"
 #include "processes/tools/replay/replay.h"
 
@@ -59,6 +60,9 @@ std::unique_ptr<FrameSource> OpenFrameSource(
     const std::string& path, std::int64_t first = std::numeric_limits<std::int64_t>::min(),
     std::int64_t last = std::numeric_limits<std::int64_t>::max(),
     LogInputs inputs = LogInputs::kImages, const std::string& calibration = "");
+/// The same of a recording.
+std::unique_ptr<FrameSource> OpenRecordingSource(const RecordingArguments& recording,
+                                                 std::int64_t first, std::int64_t last);
 
 }  // namespace airdos
 
