@@ -90,8 +90,8 @@ std::vector<HelpEntry> EntriesOf(const std::string& help) {
 
 // Files and folders have the same names everywhere.
 const std::set<std::string> kVocabulary = {
-    "INPUT", "--data", "--log", "--out", "--run-dir", "--config", "--json", "--plot", "--timing",
-    "--resolved-config", "--write-log",
+    "--calibration", "INPUT", "--data", "--log", "--out", "--run-dir", "--config", "--json",
+    "--plot", "--timing", "--resolved-config", "--write-log",
     // What is compared with what.
     "--estimate", "--ground-truth", "--times", "--people", "--joints", "--runs", "--solver"};
 

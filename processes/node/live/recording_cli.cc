@@ -26,7 +26,9 @@ void RecordingArguments::AddTo(CommandLine* line) {
                 "times of the images, one a line, in s, ms, us or ns; the names of the images may "
                 "stand beside them");
   line->Add("--rate", &rate_hz_, "images a second, where they have no times").ShownAs("HZ");
-  calibration_.AddTo("--calibration", line);
+  calibration_.AddTo("--calibration", line,
+                     std::string("; of INPUT without one, by name: ") + kPublicCalibration +
+                         " is that of the public set");
 }
 
 void RecordingArguments::Settle(InputOptions* input) {

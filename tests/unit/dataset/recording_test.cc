@@ -241,6 +241,17 @@ TEST_F(RecordingTest, RowsStayWithTheirImagesWhereOneIsMissing) {
   EXPECT_EQ(TimesOf(&recording), (Times{0, 200000, 350000, 400000}));
 }
 
+TEST_F(RecordingTest, RowsBelongToTheNumbersOfBothCameras) {
+  for (int i = 1; i <= 5; ++i) {  // numbers from 1; with the left ones alone they may be from 0
+    if (i != 5) WriteLeft(Format("l/%d.png", i), i);
+    if (i != 2) WriteRight(Format("r/%d.png", i), i);
+  }
+  FolderRecording recording(
+      {Path("l"), Path("r"), Write("times.txt", "0.0\n0.1\n0.2\n0.35\n0.4\n"), std::nullopt});
+  EXPECT_EQ(NumbersOf(&recording), (Numbers{1, 3, 4}));
+  EXPECT_EQ(TimesOf(&recording), (Times{0, 200000, 350000}));
+}
+
 TEST_F(RecordingTest, WithoutTimesARateIsNeeded) {
   WriteNumbered(3);
   EXPECT_TRUE(Holds(Refusal({Path("l"), Path("r"), "", std::nullopt}), "--rate HZ"));
