@@ -23,6 +23,7 @@
 #include "processes/map_recorder/map_recorder_options.h"
 #include "processes/optimizer/optimizer_options.h"
 #include "processes/person_detector/person_detector_options.h"
+#include "processes/stereo_camera/camera_options.h"
 #include "processes/stereo_player/player_options.h"
 
 namespace airdos {
@@ -44,7 +45,8 @@ Process Make() {
 const std::vector<std::function<Process()>>& Makers() {
   static const std::vector<std::function<Process()>> makers{
       Make<FrontendOptions>,    Make<HumanTrackerOptions>,   Make<OptimizerOptions>,
-      Make<MapRecorderOptions>, Make<PersonDetectorOptions>, Make<PlayerOptions>};
+      Make<MapRecorderOptions>, Make<PersonDetectorOptions>, Make<PlayerOptions>,
+      Make<CameraOptions>};
   return makers;
 }
 

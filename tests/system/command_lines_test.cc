@@ -96,7 +96,7 @@ const std::set<std::string> kVocabulary = {
     "--estimate", "--ground-truth", "--times", "--people", "--joints", "--runs", "--solver"};
 
 TEST_F(CommandLineTest, EachHelpTextCanBeRead) {
-  ASSERT_GE(Programs().size(), 13u);
+  ASSERT_GE(Programs().size(), 14u);
   for (const std::string& program : Programs()) {
     for (std::vector<std::string> arguments : CommandsOf(program)) {
       const std::string title = program + (arguments.empty() ? "" : " " + arguments[0]);
@@ -150,6 +150,7 @@ TEST_F(CommandLineTest, EachProcessPrintsItsConfigurationAndWhatItMeans) {
                                                       {"airdos-map-recorder", "map_recorder"},
                                                       {"airdos-optimizer", "optimizer"},
                                                       {"airdos-person-detector", "person_detector"},
+                                                      {"airdos-stereo-camera", "stereo_camera"},
                                                       {"airdos-stereo-player", "stereo_player"}};
   for (const auto& [program, config] : configs) {
     std::ifstream file(AIRDOS_SOURCE_DIR "/launch_scripts/config/" + config + ".yaml");

@@ -56,7 +56,8 @@ void AddCommonOptions(const OptionPages& pages, CommandLine* app, CommonArgument
 
 const std::vector<std::string>& ConfigNames() {
   static const std::vector<std::string> names{"frontend",     "human_tracker",   "optimizer",
-                                              "map_recorder", "person_detector", "stereo_player"};
+                                              "map_recorder", "person_detector", "stereo_camera",
+                                              "stereo_player"};
   return names;
 }
 
