@@ -1,0 +1,33 @@
+#ifndef AIRDOS_COMMON_DATASET_KEYPOINTS_FOREIGN_LAYOUTS_H_
+#define AIRDOS_COMMON_DATASET_KEYPOINTS_FOREIGN_LAYOUTS_H_
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/dataset/stereo_sequence.h"
+
+namespace airdos {
+
+/// The joint orders of other programs. COCO-WholeBody begins like COCO-17, Halpe-136 like Halpe-26.
+enum class ForeignLayout { kCoco17, kCoco18, kBody25, kHalpe26, kWholeBody133, kHalpe136 };
+
+/// "COCO-17", for messages.
+std::string NameOf(ForeignLayout layout);
+int NumJoints(ForeignLayout layout);
+
+/// The layout among `possible` that has `count` numbers a person: u, v (px) and confidence of each
+/// joint. Nothing if there is none.
+std::optional<ForeignLayout> LayoutOfCount(std::size_t count,
+                                           const std::vector<ForeignLayout>& possible);
+
+/// The same person in COCO-18. `numbers`: u, v (px) and confidence of each joint of the layout. A
+/// joint that is not finite or whose confidence is not positive is not seen, 0 0 0; a neck that the
+/// layout lacks is the middle of the shoulders, with the lower confidence, where both are seen.
+/// Confidences stay as they are.
+PersonKeypoints ToCoco18(ForeignLayout layout, const std::vector<float>& numbers);
+
+}  // namespace airdos
+
+#endif  // AIRDOS_COMMON_DATASET_KEYPOINTS_FOREIGN_LAYOUTS_H_
