@@ -110,10 +110,10 @@ class Matcher {
                    const std::vector<std::string>& our_numbers) {
     if (unknown.empty()) return;
     std::vector<std::string> names;
-    for (const std::size_t index : unknown) names.push_back("'" + Shown(theirs_[index].name) + "'");
+    for (const std::size_t index : unknown) names.push_back(Shown(theirs_[index].name));
     if (unknown.size() == theirs_.size()) {
-      throw InputError(path_ + ": none of its images, such as " + names[0] +
-                       ", is one of ours, such as '" + Shown(our_names_[0]) +
+      throw InputError(path_ + ": none of its images, such as '" + names[0] +
+                       "', is one of ours, such as '" + Shown(our_names_[0]) +
                        "': names or numbers must be the same");
     }
     std::string note = path_ + ": " + std::to_string(unknown.size()) + " of its " +
