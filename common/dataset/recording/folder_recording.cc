@@ -225,10 +225,11 @@ void FolderRecording::NoteFormats(const std::vector<Surveyed>& surveyed) {
   }
   if (!sixteen.empty()) {
     range_ = FindSixteenBitRange(sixteen).value_or(SixteenBitRange());
-    notes_.push_back(name_ + ": " + RangeText(range_));
-    if (sixteen.size() < 2 * surveyed.size()) {
-      notes_.push_back(IsOrAre(sixteen) + "of 16 bits, the others of 8: grey values may differ");
-    }
+    const bool are_all = sixteen.size() == 2 * surveyed.size();
+    notes_.push_back(are_all ? name_ + ": " + RangeText(range_)
+                             : IsOrAre(sixteen) +
+                                   "of 16 bits, the others of 8: grey values may differ (" +
+                                   RangeText(range_) + ")");
   }
   if (grey.empty() || coloured.empty()) return;
   const bool are_few_grey = grey.size() <= coloured.size();

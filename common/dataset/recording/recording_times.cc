@@ -109,18 +109,26 @@ bool ParseDate(const std::string& text, std::int64_t* utime) {
   }
   std::int64_t second_us = 0;
   if (!ParseMicroseconds(text.substr(static_cast<std::size_t>(length)), &second_us)) return false;
+  const auto lies_in = [](int value, int from, int to) { return value >= from && value <= to; };
+  constexpr std::int64_t kEnd_us = 61000000;  // of a minute with a leap second
+  if (year < 0 || !lies_in(month, 1, 12) || !lies_in(day, 1, 31) || !lies_in(hour, 0, 23) ||
+      !lies_in(minute, 0, 59) || second_us < 0 || second_us >= kEnd_us) {
+    return false;
+  }
   *utime = ((DaysSince1970(year, month, day) * 24 + hour) * 60 + minute) * 60000000 + second_us;
   return true;
 }
 
 bool ParseTime(const Row& row, const std::string& unit, std::int64_t* utime) {
   if (row.is_date) return ParseDate(row.time, utime);
-  const std::string exponent = unit == "ms"   ? "e-3"
-                               : unit == "us" ? "e-6"
-                               : unit == "ns" ? "e-9"
-                                              : "";
+  const int power_of_unit = unit == "ms" ? -3 : unit == "us" ? -6 : unit == "ns" ? -9 : 0;
+  const std::size_t e = row.time.find_first_of("eE");  // as NumPy writes: 1.403636579763555584e+18
+  long power = 0;
+  if (e != std::string::npos) power = std::strtol(row.time.c_str() + e + 1, nullptr, 10);
+  constexpr long kMaxPower = 400;  // of any number that is finite
+  power = std::clamp(power, -kMaxPower, kMaxPower) + power_of_unit;
   // Exact: nanoseconds since 1970 have more digits than a double can hold.
-  return ParseMicroseconds(row.time + exponent, utime);
+  return ParseMicroseconds(row.time.substr(0, e) + "e" + std::to_string(power), utime);
 }
 
 std::string UnitOf(const std::vector<Row>& rows) {
@@ -181,8 +189,8 @@ RecordingTimes ReadRecordingTimes(const std::string& path) {
   for (const Row& row : rows) {
     std::int64_t utime = 0;
     if (!ParseTime(row, times.unit, &utime)) {
-      throw InputError(Where(path, row) + "'" + Shown(row.time) + "' is not a time in " +
-                       times.unit);
+      throw InputError(Where(path, row) + "'" + Shown(row.time) + "' is not a " +
+                       (row.is_date ? "date and time of day" : "time in " + times.unit));
     }
     times.utimes.push_back(utime);
     times.stems.push_back(row.stem);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
@@ -61,6 +63,13 @@ TEST_F(RecordingTest, OneFolderWithoutSidesIsRefused) {
   EXPECT_TRUE(Holds(Refusal({Path("l"), "", "", 20.0}), "which images are left and which right"));
 }
 
+TEST_F(RecordingTest, OnePairNeedsNoNumbers) {
+  WriteLeft("l/view_of_left.png", 3);
+  WriteRight("r/other.png", 3);
+  FolderRecording recording(Numbered());
+  EXPECT_EQ(NumbersOf(&recording), (Numbers{3}));
+}
+
 TEST_F(RecordingTest, KittiRawAndEurocFoldersAreOneFurtherDown) {
   for (int i = 0; i < 3; ++i) {
     WriteLeft(Format("image_00/data/%010d.png", i), i);
@@ -109,6 +118,7 @@ TEST_F(RecordingTest, TruncatedAndForeignFilesAreLeftOut) {
   fs::resize_file(Path("l/000001.png"), 60);
   Write("r/000003.png", "no picture");
   FolderRecording recording(Numbered());
+  EXPECT_EQ(recording.num_pairs(), 3u);
   EXPECT_EQ(NumbersOf(&recording), (Numbers{0, 2, 4}));
   const std::string notes = Notes(&recording);
   EXPECT_TRUE(Holds(notes, "l/000001.png: is cut short")) << notes;
@@ -159,6 +169,20 @@ TEST_F(RecordingTest, SixteenBitImagesAreScaledByOneRange) {
   EXPECT_EQ(NumbersOf(&recording), (Numbers{20, 21, 22}));
   const std::string notes = Notes(&recording);
   EXPECT_TRUE(Holds(notes, "12 significant bits: divided by 16")) << notes;
+}
+
+TEST_F(RecordingTest, OneImageOfSixteenBitsAmongOthersIsUsed) {
+  WriteNumbered(4);
+  cv::Mat deep;
+  Plain(2, false).convertTo(deep, CV_16UC1, 256);
+  deep.at<std::uint16_t>(0, 0) = 65535;  // a sensor that uses all bits
+  scratch_.WritePicture("r/000002.png", deep);
+  FolderRecording recording(Numbered());
+  EXPECT_EQ(NumbersOf(&recording), (Numbers{0, 1, 2, 3}));
+  const std::string notes = Notes(&recording);
+  EXPECT_TRUE(Holds(notes, "r/000002.png' is of 16 bits, the others of 8: grey values may differ"))
+      << notes;
+  EXPECT_EQ(std::count(notes.begin(), notes.end(), '\n'), 1) << notes;
 }
 
 TEST_F(RecordingTest, ColourAndGreyMixedAreUsedInGrey) {

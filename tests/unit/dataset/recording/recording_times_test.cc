@@ -60,8 +60,30 @@ TEST_F(RecordingTest, TimesOfAFileByNameAndByRow) {
                      "l/000001.png\n1403636579863556;l/000002.png\n"),
             expected);
   EXPECT_EQ(times_of("1403636579.763556\n1403636579.813556\n1403636579.863556\n"), expected);
+  EXPECT_EQ(times_of("1.403636579763555584e+18\n1.403636579813555584E18\n"
+                     "1.403636579863555584e18\n"),
+            expected)
+      << "as NumPy writes";
   EXPECT_EQ(times_of("0.1\n0.2\n0.3\n"), (Times{100000, 200000, 300000}));
   EXPECT_EQ(times_of("100\n200\n300\n"), (Times{100000, 200000, 300000})) << "ms";
+}
+
+TEST_F(RecordingTest, ImagesThatAFileOfTimesDoesNotNameAreLeftOut) {
+  WriteNumbered(3);
+  const std::string csv = Write("times.csv", "0.1 000000.png\n0.25 000002.png\n0.3 000007.png\n");
+  FolderRecording recording({Path("l"), Path("r"), csv, std::nullopt});
+  EXPECT_EQ(NumbersOf(&recording), (Numbers{0, 2}));
+  EXPECT_EQ(TimesOf(&recording), (Times{100000, 250000}));
+  const std::string notes = Notes(&recording);
+  EXPECT_TRUE(Holds(notes, "times.csv: holds no time of '000001.png': skipped")) << notes;
+}
+
+TEST_F(RecordingTest, WhereSomeRowsHaveNoNameRowsCount) {
+  WriteNumbered(3);
+  const std::string csv = Write("times.csv", "0.1 000000.png\n0.25\n0.3 000002.png\n");
+  FolderRecording recording({Path("l"), Path("r"), csv, std::nullopt});
+  EXPECT_EQ(NumbersOf(&recording), (Numbers{0, 1, 2}));
+  EXPECT_EQ(TimesOf(&recording), (Times{100000, 250000, 300000}));
 }
 
 TEST_F(RecordingTest, AFileOfTimesThatIsNoneIsRefused) {
@@ -75,6 +97,28 @@ TEST_F(RecordingTest, AFileOfTimesThatIsNoneIsRefused) {
   EXPECT_TRUE(Holds(refusal(""), "holds no time"));
   EXPECT_TRUE(Holds(refusal("0.1\n0.2\n"), "holds 2 times for 3 images"));
   EXPECT_TRUE(Holds(Refusal({Path("l"), Path("r"), Path("none.txt"), std::nullopt}), "none.txt"));
+}
+
+TEST_F(RecordingTest, DatesThatAreNoneAreRefused) {
+  for (const std::string date :
+       {"2011-13-26 13:02:25.9", "2011-00-26 13:02:25.9", "2011-09-32 13:02:25.9",
+        "2011-09-00 13:02:25.9", "2011-09-26 24:02:25.9", "2011-09-26 13:60:25.9",
+        "2011-09-26 13:02:61.0", "2011-09-26 13:02:-1.0", "2011-09-26 13:02:", "2011-09-26 13.2"}) {
+    EXPECT_TRUE(Holds(ErrorOf([&] { ReadRecordingTimes(Write("t.txt", date + "\n")); }),
+                      "t.txt:1: '" + date + "' is not a date and time of day"))
+        << date;
+  }
+  EXPECT_EQ(
+      ReadRecordingTimes(Write("t.txt", "2012/02/29 00:00:00.0\n2012/03/01 00:00:00\n")).utimes,
+      (Times{1330473600000000, 1330560000000000}));
+}
+
+TEST_F(RecordingTest, NumbersThatAreTimesAtTheBeginningOnlyAreNone) {
+  for (const char* name : {"1403636579", "1403636580", "1403636581", "9000000000000000000"}) {
+    WriteLeft(std::string("l/") + name + ".png", 0);
+    WriteRight(std::string("r/") + name + ".png", 0);
+  }
+  EXPECT_TRUE(Holds(Refusal({Path("l"), Path("r"), "", std::nullopt}), "--rate HZ"));
 }
 
 TEST_F(RecordingTest, RowsStayWithTheirImagesWhereOneIsMissing) {

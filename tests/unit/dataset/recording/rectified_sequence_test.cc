@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
@@ -76,7 +78,12 @@ class EurocTest : public RecordingTest {
     return Format("%ld.png", static_cast<long>(kFirst_ns + 50000000L * i));
   }
 
-  /// The camera looks along the body's x axis; the body drives along x, 0.1 m an image.
+  static std::string Row(std::int64_t after_first_ns, double distance_m) {
+    return Format("%ld,1,%g,2,0.70710678,0,0,0.70710678,0,0,0,0,0,0,0,0,0\n",
+                  static_cast<long>(kFirst_ns + after_first_ns), distance_m);
+  }
+  /// The camera looks along the body's x axis, which points along the world's y axis; there the
+  /// body drives, 0.1 m an image.
   void WriteEuroc(int count) const {
     std::string csv = "#timestamp [ns],filename\n";
     std::string truth = "#timestamp, p_RS_R_x [m], ...\n";
@@ -85,16 +92,17 @@ class EurocTest : public RecordingTest {
       WriteRight("mav0/cam1/data/" + Name(i), i);
       csv += Format("%ld,", static_cast<long>(kFirst_ns + 50000000L * i)) + Name(i) + "\r\n";
     }
-    for (int i = 0; i < 2 * count; ++i) {  // between the images
-      truth +=
-          Format("%ld,%g,1,2,1,0,0,0,0,0,0,0,0,0,0,0,0\n",
-                 static_cast<long>(kFirst_ns + 12500000L + 25000000L * i), 0.1 * (0.25 + 0.5 * i));
+    for (int i = 0; i < 3 * count;
+         ++i) {  // between the images, now nearer to this one, now to that
+      truth += Row(15000000L + 20000000L * i, 0.03 + 0.04 * i);
     }
     Write("mav0/cam0/data.csv", csv);
     Write("mav0/cam0/sensor.yaml", Sensor("0,0,1,0, -1,0,0,0, 0,-1,0,0, 0,0,0,1"));
     Write("mav0/cam1/sensor.yaml", Sensor("0,0,1,0, -1,0,0,-0.11, 0,-1,0,0, 0,0,0,1"));
-    Write("mav0/state_groundtruth_estimate0/data.csv", truth);
+    Write(kTruth, truth);
   }
+
+  static constexpr char kTruth[] = "mav0/state_groundtruth_estimate0/data.csv";
 };
 
 TEST_F(EurocTest, IsADataSetWithGroundTruth) {
@@ -106,13 +114,44 @@ TEST_F(EurocTest, IsADataSetWithGroundTruth) {
   EXPECT_EQ(sequence->ground_truth_axes(), TrajectoryAxes::kOptical);
   EXPECT_FALSE(sequence->ground_truth(0)) << "before the first row";
   const auto first = sequence->ground_truth(1);
+  const auto second = sequence->ground_truth(2);
   const auto last = sequence->ground_truth(3);
-  ASSERT_TRUE(first && last);
+  ASSERT_TRUE(first && second && last);
   EXPECT_LT(first->translation.norm(), 1e-9);
+  EXPECT_LT((second->translation - Eigen::Vector3d(0, 0, 0.1)).norm(), 1e-6)
+      << second->translation.transpose();
   EXPECT_LT((last->translation - Eigen::Vector3d(0, 0, 0.2)).norm(), 1e-6)
       << "forward is the camera's z axis: " << last->translation.transpose();
+  EXPECT_TRUE(sequence->Load(2).ground_truth);
   EXPECT_TRUE(HasSequenceLayout(Path("mav0")));
   EXPECT_EQ(OpenStereoSequence(Path("mav0"))->num_frames(), 4u);
+}
+
+TEST_F(EurocTest, TheGroundTruthIsThatOfTheRectifiedCamera) {
+  WriteEuroc(4);
+  // The right camera stands 2 cm ahead of the left one, so that rectification turns both.
+  Write("mav0/cam1/sensor.yaml", Sensor("0,0,1,0.02, -1,0,0,-0.11, 0,-1,0,0, 0,0,0,1"));
+  const auto opened = OpenStereoSequence(folder_.string());
+  const auto* const sequence = dynamic_cast<const RectifiedSequence*>(opened.get());
+  ASSERT_NE(sequence, nullptr);
+  const Eigen::Vector3d forward = sequence->rectifier().R_rect_left() * Eigen::Vector3d(0, 0, 1);
+  EXPECT_GT(std::abs(forward.x()), 0.1);
+  const auto last = sequence->ground_truth(3);
+  ASSERT_TRUE(last);
+  EXPECT_LT((last->translation - 0.2 * forward).norm(), 1e-6) << last->translation.transpose();
+}
+
+TEST_F(EurocTest, BetweenRowsThatAreFarApartThereIsNoGroundTruth) {
+  WriteEuroc(3);
+  Write(kTruth, Row(0, 0) + Row(60000000, 0.12) + Row(100000000, 0.2));
+  const auto sequence = OpenStereoSequence(folder_.string());
+  EXPECT_TRUE(sequence->ground_truth(0));
+  EXPECT_FALSE(sequence->ground_truth(1));
+  EXPECT_TRUE(sequence->ground_truth(2));
+  const std::vector<std::string> notes = sequence->notes();
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
+    return Holds(note, "2 of 3 images have a pose");
+  }));
 }
 
 TEST_F(EurocTest, WithoutACalibrationItIsRefused) {
@@ -124,9 +163,8 @@ TEST_F(EurocTest, WithoutACalibrationItIsRefused) {
 
 TEST_F(EurocTest, DamagedGroundTruthNamesTheLine) {
   WriteEuroc(3);
-  const std::string truth = "mav0/state_groundtruth_estimate0/data.csv";
   const auto refusal = [&](const std::string& line) {
-    Write(truth, "#head\n" + line + "\n");
+    Write(kTruth, "#head\n" + line + "\n");
     return ErrorOf([&] { OpenStereoSequence(folder_.string()); });
   };
   EXPECT_TRUE(Holds(refusal("1403636579763555584,1,2,3"), "data.csv:2: must hold a time in ns"));

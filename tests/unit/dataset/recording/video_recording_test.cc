@@ -88,6 +88,9 @@ TEST_F(VideoTest, OfVideosOfDifferentLengthsTheCommonPartIsUsed) {
   VideoRecording recording({WriteSide("l.avi", 5, true), WriteSide("r.avi", 8, false)});
   EXPECT_EQ(NumbersOf(&recording), (Numbers{0, 1, 2, 3, 4}));
   EXPECT_TRUE(Holds(Notes(&recording), "has 5 images, " + Path("r.avi") + " 8: the first 5 pairs"));
+  VideoRecording other({WriteSide("l2.avi", 8, true), WriteSide("r2.avi", 5, false)});
+  EXPECT_EQ(other.num_pairs(), 5u);
+  EXPECT_EQ(NumbersOf(&other), (Numbers{0, 1, 2, 3, 4}));
 }
 
 TEST_F(VideoTest, OfAVideoThatIsCutShortTheBeginningIsKept) {
