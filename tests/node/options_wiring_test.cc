@@ -252,7 +252,8 @@ TEST(OptionsWiringTest, KeysSayTheirMembersNames) {
                                "optimizer/optimizer_options.cc",
                                "map_recorder/map_recorder_options.cc",
                                "person_detector/person_detector_options.cc",
-                               "stereo_player/player_options.cc"};
+                               "stereo_player/player_options.cc",
+                               "stereo_camera/camera_options.cc"};
   for (std::size_t i = 0; i < Makers().size(); ++i) {
     const auto lines = LinesOf("processes/" + paths[i]);
     const auto num_twice = std::count_if(lines.begin(), lines.end(), [](const auto& key_member) {
