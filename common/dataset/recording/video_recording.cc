@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <opencv2/videoio.hpp>
 
 #include "common/dataset/recording/recording_times.h"
@@ -18,6 +19,15 @@ std::string SizeText(const std::pair<int, int>& size) {
   return std::to_string(size.first) + "x" + std::to_string(size.second) + " px";
 }
 
+/// What FFmpeg would print of a damaged video, our notes say in a line. OpenCV asks the environment
+/// when it opens the first one; whoever has set the variable sees all.
+void SilenceFfmpeg() {
+  constexpr char kQuiet[] = "-8";  // AV_LOG_QUIET
+  constexpr int kKeepsOther = 0;
+  static const int result = setenv("OPENCV_FFMPEG_LOGLEVEL", kQuiet, kKeepsOther);
+  (void)result;
+}
+
 }  // namespace
 
 /// One video, read from its beginning on.
@@ -25,6 +35,7 @@ class VideoRecording::Reader {
  public:
   Reader(const std::string& path, std::optional<double> rate_hz) : path_(path), rate_hz_(rate_hz) {
     RequireRegularFile(path);
+    SilenceFfmpeg();
     Rewind();
     size_ = {static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH)),
              static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT))};
