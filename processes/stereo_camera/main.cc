@@ -28,9 +28,6 @@ int Capture(airdos::CameraOptions options, const airdos::CalibrationArguments& c
   const airdos::StereoRectifier rectifier(rig, calibration.rectifier_options());
   airdos::RequireSize(*grabber, rectifier);
   airdos::LcmTransport transport(common.lcm_url);
-  for (const auto* notes : {&rig.notes, &rectifier.notes()}) {
-    for (const std::string& note : *notes) log.Relay(calibration.paths()[0] + ": " + note);
-  }
   const std::int64_t now_us = airdos::WallClock_us();
   const std::int64_t offset_us = now_us - SteadyClock_us();
   options.messages.session = options.session.value_or(now_us);
@@ -38,6 +35,9 @@ int Capture(airdos::CameraOptions options, const airdos::CalibrationArguments& c
   airdos::CameraMessages messages(&rectifier, options.messages);
   airdos::CameraLoop loop(&capture, &messages, offset_us, &transport, &log,
                           airdos::NotifySocketOfEnvironment());
+  for (const auto* notes : {&rig.notes, &rectifier.notes()}) {
+    for (const std::string& note : *notes) log.Relay(calibration.paths()[0] + ": " + note);
+  }
   std::cout << airdos::CameraLoop::kProcessName << " READY version " << airdos::kVersion << " url "
             << common.lcm_url << " config " << common.config_file << std::endl;
   return loop.Run();
