@@ -109,6 +109,7 @@ void PlayerLoop::Run() {
   transport_->Subscribe(channel::kStatus,
                         HandlerOf<process_status_t>([this](const process_status_t& status) {
                           gate_.OnStatus(status, SteadyClock_s());
+                          if (options_.pace == PlayerPace::kRealtime) lag_.OnStatus(status);
                         }));
   transport_->Subscribe(channel::kFrameDone,
                         HandlerOf<frame_done_t>([this](const frame_done_t& done) {
@@ -198,6 +199,7 @@ void PlayerLoop::PublishFrame(const std::vector<Envelope>& messages, const Heade
   }
   TellService();
   gate_.OnPublished(header.session, header.seq, SteadyClock_s());
+  lag_.OnPublished(header);
   ++num_published_;
   if (options_.say_every > 0 && num_published_ % options_.say_every == 0)
     log_->Info(std::to_string(num_published_) + " frames published");
@@ -217,6 +219,7 @@ void PlayerLoop::TellService() {
 
 void PlayerLoop::SayNotes(FrameSource* source) {
   for (const std::string& note : gate_.TakeNotes()) log_->Relay(note);
+  for (const std::string& note : lag_.TakeNotes()) log_->Relay(note);
   if (source == nullptr) return;
   for (const std::string& note : source->TakeNotes()) log_->Relay(note);
 }
