@@ -15,6 +15,7 @@
 #   --capture-size SIZE, --pixel-format CODE
 #                         passed on: airdos-stereo-player --help and airdos-stereo-camera --help tell of them
 #   --no-detect           without airdos-person-detector, which is started with --camera, --video and --images
+#   --record              also record what the processes publish to <run-dir>/output.lcm, as --video and --images do anyway
 #   --data FOLDER         also start the player on this data set, and stop when all of it has been processed; can be a log, too
 #   --loop N              with --data: play it N times as one long session (default 1), reporting progress every 500 frames
 #   --log FILE            also play this LCM log (only the channels of camera and detectors), and stop likewise
@@ -45,7 +46,7 @@ readonly STOP_DEADLINE_S=20
 readonly IDLE_S=6
 readonly DRAIN_DEADLINE_S=600
 
-data='' loop=1 log='' speed=1 pace='' url=$AIRDOS_DEFAULT_URL run_dir='' host_network=no is_inside=no force=no check=yes detect=''
+data='' loop=1 log='' speed=1 pace='' url=$AIRDOS_DEFAULT_URL run_dir='' host_network=no is_inside=no force=no check=yes detect='' record=no
 camera=() video=() images=() calibration=() source_options=()
 original_arguments=("$@")
 while (($# > 0)); do
@@ -72,6 +73,7 @@ while (($# > 0)); do
       ;;
     --side-by-side | --over-under | --swap | --rectified | --scale-calibration) source_options+=("$1") ;;
     --no-detect) detect=no ;;
+    --record) record=yes ;;
     --data | --loop | --log | --speed | --pace | --lcm-url | --run-dir)
       need_value "$@"
       name=${1#--}
@@ -128,6 +130,8 @@ if [[ -z $detect ]]; then
   detect=no
   if ((${#source_arguments[@]} > 0)); then detect=yes; fi
 fi
+# A recording ends; a camera may go on for days.
+if ((${#video[@]} > 0 || ${#images[@]} > 0)); then record=yes; fi
 readonly source
 [[ $loop =~ ^[1-9][0-9]*$ ]] || die_usage "--loop: not a whole number above 0: '$loop'"
 [[ -z $data || -e $data ]] || die_usage "--data: no folder '$data'"
@@ -139,6 +143,7 @@ if [[ $detect == yes ]]; then
   PROCESSES+=(person-detector)
   channels='^(CAMERA_LEFT|CAMERA_RIGHT|CALIBRATION|GROUND_TRUTH)$'
 fi
+if [[ $record == yes ]]; then PROCESSES+=(record); fi # the last one to be stopped
 readonly PROCESSES channels
 for process in "${PROCESSES[@]}"; do need_program "airdos-$process"; done
 if [[ -n $data ]] || ((${#source_arguments[@]} > 0)); then need_program "airdos-stereo-$source"; fi
@@ -326,7 +331,8 @@ report_ended() {
   for name in "${PROCESSES[@]}"; do
     if [[ -z ${exit_codes[$name]:-} ]] && ! is_running "$name"; then
       collect "$name"
-      say "$name ended with exit code ${exit_codes[$name]}; the others continue. To restart it:"
+      say "$name ended with exit code ${exit_codes[$name]}; the others continue.$([[ $name == record ]] || echo " To restart it:")"
+      [[ $name != record ]] || continue # it would begin another log
       # The recorder finds its unfinished map there and continues it.
       say "  nsenter -t $$ -n -- $AIRDOS_BIN/airdos-$name --lcm-url '$url' --pace $pace$(
         [[ $name != map-recorder ]] || echo " --set output.directory='$run_dir'"
@@ -350,6 +356,10 @@ start map-recorder "$AIRDOS_BIN/airdos-map-recorder" "${arguments[@]}" --set "ou
   --resolved-config "$run_dir/map_recorder.yaml"
 if [[ $detect == yes ]]; then
   start person-detector "$AIRDOS_BIN/airdos-person-detector" "${arguments[@]}" --resolved-config "$run_dir/person_detector.yaml"
+fi
+if [[ $record == yes ]]; then
+  outputs='STATIC_FEATURES|HUMAN_OBSERVATIONS|STATE_ESTIMATE|MAP_UPDATE|PERSON_KEYPOINTS_LEFT|PERSON_KEYPOINTS_RIGHT|PERSON_MASK'
+  start record "$AIRDOS_BIN/airdos-record" --lcm-url "$url" --out "$run_dir/output.lcm" --channels "$outputs" --force
 fi
 for process in "${PROCESSES[@]}"; do wait_until_ready "$process"; done
 say "READY: ${PROCESSES[*]} on $url"

@@ -224,6 +224,7 @@ started_with() { grep -qF -e "$2" "$work/run/$1.log" || fail "$1 was not started
 live_takes_a_camera_and_makes_what_the_demo_makes() {
   local process
   make_process airdos-person-detector
+  make_process airdos-record
   fresh
   start_live --camera "$log" --side-by-side --rate 30 --calibration "$log" "$log" --capture-size 640x240
   end_live 0
@@ -239,6 +240,7 @@ live_takes_a_camera_and_makes_what_the_demo_makes() {
   ran 1 "^airdos-map plot $work/run/map.airdos --out $work/run/map.png --force\$"
   live_says out "$work/run/map.airdos"
   all_ended 0
+  ! [[ -e $work/run/record.log ]] || fail "a camera was recorded unasked"
   FAILS=map start_live --camera "$log" --over-under --calibration "$log" --no-detect --pace lockstep
   end_live 0
   live_says out 'run_live.sh: no picture of the map (see above)'
@@ -249,6 +251,9 @@ live_takes_a_camera_and_makes_what_the_demo_makes() {
   end_live 2
   live_says err 'airdos-stereo-camera: no such device'
   all_ended 0
+  start_live --camera "$log" --side-by-side --calibration "$log" --no-detect --record
+  end_live 0
+  started_with record "--out $work/run/output.lcm --channels STATIC_FEATURES|"
 }
 
 live_plays_a_recording() {
@@ -257,6 +262,8 @@ live_plays_a_recording() {
   end_live 0
   ran 1 "^airdos-stereo-player --video $log $log --calibration $log --swap --lcm-url udpm://.* --pace lockstep .*--without keypoints,masks\$"
   started_with person-detector "--pace lockstep"
+  live_says out "run_live.sh: record: exit code 0"
+  started_with record "--out $work/run/output.lcm"
   ran 0 "^airdos-(map|evaluate)"
   start_live --images "$work" --times "$log" --calibration "$log" --no-detect --pace realtime
   end_live 0
