@@ -25,6 +25,14 @@ constexpr const char* kRead =
     "read are AlphaPose's and COCO's results (one file) and, a file an image in a folder, "
     "OpenPose's and lines of numbers";
 
+/// OpenPose's own, and those that others write into files like its.
+const std::vector<ForeignLayout>& LayoutsOfOpenPose() {
+  static const std::vector<ForeignLayout> layouts = {
+      ForeignLayout::kBody25,  ForeignLayout::kCoco18,       ForeignLayout::kCoco17,
+      ForeignLayout::kHalpe26, ForeignLayout::kWholeBody133, ForeignLayout::kHalpe136};
+  return layouts;
+}
+
 std::string EntryText(const std::string& path, std::size_t number) {
   return path + ": entry " + std::to_string(number);
 }
@@ -94,13 +102,13 @@ ForeignKeypoints ReadJsonFile(const std::string& path) {
   if (!rest.is_object() || !rest.contains("people")) {
     throw InputError(ExplainObject(path, rest));
   }
-  KeypointCollector image(path, "OpenPose", {ForeignLayout::kBody25, ForeignLayout::kCoco18});
+  KeypointCollector image(path, "OpenPose", LayoutsOfOpenPose());
   AddOpenPoseImage(path, rest, &image);
   return image.Finish();
 }
 
 ForeignKeypoints ReadJsonFolder(const std::string& folder, const std::vector<std::string>& names) {
-  KeypointCollector collector(folder, "OpenPose", {ForeignLayout::kBody25, ForeignLayout::kCoco18});
+  KeypointCollector collector(folder, "OpenPose", LayoutsOfOpenPose());
   for (const std::string& name : names) {
     const std::string path = folder + "/" + name;
     const Json object = ParseForeignJson(path, kMaxImageBytes, [&](const Json&, std::size_t) {

@@ -31,7 +31,7 @@ struct ForeignKeypoints {
 ///   of each joint): AlphaPose's results (COCO-17, Halpe-26, Halpe-136, COCO-WholeBody), COCO
 ///   results
 /// - a folder with a JSON file an image, as OpenPose writes them (`people`, `pose_keypoints_2d`:
-///   BODY_25, COCO-18; empty lists are nobody)
+///   BODY_25, BODY_25B, COCO-18; empty lists are nobody), also in the layouts of the others
 /// - a folder with a text file an image (keypoint_file.h)
 /// - a folder with one JSON list
 /// People without any joint are left out. Confidences become 0..1: where most joints have more than

@@ -65,11 +65,27 @@ void KeypointCollector::AddPerson(const std::string& image, const std::string& w
                      NameOf(*result_.layout) + "; all must have the same layout");
   }
   result_.layout = layout;
-  PersonKeypoints person = ToCoco18(*layout, numbers);
+  if (*layout == ForeignLayout::kBody25) {
+    undecided_.push_back(numbers);
+    images_of_undecided_.push_back(place_of_.at(image));
+    return;
+  }
+  Keep(ToCoco18(*layout, numbers), found);
+}
+
+void KeypointCollector::DecideBody25() {
+  if (AreInBody25B(undecided_)) result_.layout = ForeignLayout::kBody25B;
+  for (std::size_t i = 0; i < undecided_.size(); ++i) {
+    Keep(ToCoco18(*result_.layout, undecided_[i]), &result_.images[images_of_undecided_[i]]);
+  }
+  undecided_.clear();
+}
+
+void KeypointCollector::Keep(PersonKeypoints person, ForeignImage* image) {
   const bool is_seen = std::any_of(person.begin(), person.end(),
                                    [](const Keypoint& joint) { return joint.confidence > 0; });
   if (is_seen) {
-    found->people.push_back(std::move(person));
+    image->people.push_back(std::move(person));
   } else {
     ++num_empty_;
   }
@@ -116,6 +132,7 @@ void KeypointCollector::LimitConfidences() {
 }
 
 ForeignKeypoints KeypointCollector::Finish() {
+  DecideBody25();
   RefuseNormalized();
   LimitConfidences();
   if (num_empty_ > 0) {

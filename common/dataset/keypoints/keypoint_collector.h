@@ -30,13 +30,17 @@ class KeypointCollector {
 
  private:
   ForeignImage* ImageOf(const std::string& name);
+  void Keep(PersonKeypoints person, ForeignImage* image);
+  void DecideBody25();
   void RefuseNormalized() const;
   void LimitConfidences();
 
   ForeignKeypoints result_;
   std::vector<ForeignLayout> possible_;
   std::map<std::string, std::size_t> place_of_;
-  std::size_t num_empty_ = 0;  // people without a joint that is seen
+  std::vector<std::vector<float>> undecided_;     // people in BODY_25 or BODY_25B
+  std::vector<std::size_t> images_of_undecided_;  // their places in result_.images
+  std::size_t num_empty_ = 0;                     // people without a joint that is seen
 };
 
 }  // namespace airdos

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -33,6 +34,15 @@ Json AlphaPosePerson(const Json& image, int num_joints) {
 
 Json OpenPosePerson(int num_joints) {
   return {{"person_id", {-1}}, {"pose_keypoints_2d", Joints(num_joints)}};
+}
+
+/// The same in BODY_25, with the nose where joint 16 is, an eye.
+Json Body25Person() {
+  Json person = OpenPosePerson(25);
+  for (std::size_t i = 0; i < 3; ++i) {
+    person["pose_keypoints_2d"][i] = person["pose_keypoints_2d"][3 * 16 + i];
+  }
+  return person;
 }
 
 class ForeignKeypointsTest : public ::testing::Test {
@@ -133,9 +143,9 @@ TEST_F(ForeignKeypointsTest, OpenPoseHasAFileAnImage) {
   const auto file = [](const Json& people) {
     return Json({{"version", 1.3}, {"people", people}}).dump();
   };
-  folder_.Write("pose/cam_000000000003_keypoints.json", file(Json::array({OpenPosePerson(25)})));
+  folder_.Write("pose/cam_000000000003_keypoints.json", file(Json::array({Body25Person()})));
   folder_.Write("pose/cam_000000000004_keypoints.json",
-                file({{{"pose_keypoints_2d", Json::array()}}, OpenPosePerson(25)}));
+                file({{{"pose_keypoints_2d", Json::array()}}, Body25Person()}));
   folder_.Write("pose/cam_000000000005_keypoints.json", file(Json::array()));
   folder_.Write("pose/.hidden.json", "no JSON");
   const ForeignKeypoints read = ReadForeignKeypoints(folder_.PathOf("pose"));
@@ -145,7 +155,8 @@ TEST_F(ForeignKeypointsTest, OpenPoseHasAFileAnImage) {
   EXPECT_EQ(read.images[0].name, "cam_000000000003");
   ASSERT_EQ(read.images[1].people.size(), 1u);
   EXPECT_TRUE(read.images[2].people.empty());
-  for (std::size_t joint = 0; joint < 18; ++joint) {
+  ExpectJoint(read.images[0].people[0], 0, 16);
+  for (std::size_t joint = 1; joint < 18; ++joint) {
     ExpectJoint(read.images[0].people[0], joint, kOfBody25[joint]);
   }
   ASSERT_EQ(read.notes.size(), 1u);
@@ -155,6 +166,60 @@ TEST_F(ForeignKeypointsTest, OpenPoseHasAFileAnImage) {
 TEST_F(ForeignKeypointsTest, OpenPoseInCoco18AndAsItWasBefore) {
   ExpectJoints(Read({{"people", Json::array({OpenPosePerson(18)})}}), kOfCoco18);
   ExpectJoints(Read({{"people", Json::array({{{"pose_keypoints", Joints(18)}}})}}), kOfCoco18);
+}
+
+/// Somebody upright, by the places of eyes, ears, neck, shoulders and hips in the layout; all else
+/// is not seen.
+Json Upright(const std::vector<std::array<double, 3>>& places_and_uv) {
+  Json numbers = std::vector<double>(75, 0);
+  for (const auto& [place, u_px, v_px] : places_and_uv) {
+    const auto at = 3 * static_cast<std::size_t>(place);
+    numbers[at] = u_px;
+    numbers[at + 1] = v_px;
+    numbers[at + 2] = 0.7;
+  }
+  return {{"pose_keypoints_2d", numbers}};
+}
+
+// Both have 75 numbers; whose joints lie around the nose tells which it is.
+TEST_F(ForeignKeypointsTest, Body25AndBody25BAreToldApart) {
+  const Json body25 = Upright({{0, 100, 50},
+                               {15, 95, 45},
+                               {16, 105, 45},
+                               {17, 90, 48},
+                               {1, 100, 80},
+                               {2, 80, 80},
+                               {3, 75, 120},
+                               {9, 90, 150}});
+  const Json body25b = Upright({{0, 100, 50},
+                                {2, 95, 45},
+                                {1, 105, 45},
+                                {4, 90, 48},
+                                {17, 100, 70},
+                                {18, 100, 20},
+                                {6, 80, 80},
+                                {5, 120, 82},
+                                {12, 90, 150}});
+  const Json unclear = Upright({{0, 100, 50}, {1, 300, 50}, {15, 101, 50}});
+  const ForeignKeypoints first = Read({{"people", Json::array({body25, body25, body25b})}});
+  EXPECT_EQ(first.layout, ForeignLayout::kBody25);
+  EXPECT_EQ(first.images[0].people[0][8].u_px, 90) << "right hip";
+  EXPECT_EQ(first.images[0].people[0][1].v_px, 80) << "neck";
+  const ForeignKeypoints second = Read({{"people", Json::array({unclear, body25b})}});
+  EXPECT_EQ(second.layout, ForeignLayout::kBody25B);
+  ASSERT_EQ(second.images[0].people.size(), 2u);
+  const PersonKeypoints& person = second.images[0].people[1];
+  EXPECT_EQ(person[8].u_px, 90) << "right hip";
+  EXPECT_EQ(person[1].u_px, 100) << "neck: the middle of the shoulders";
+  EXPECT_EQ(person[1].v_px, 81);
+  EXPECT_EQ(person[14].u_px, 95) << "right eye";
+  EXPECT_EQ(person[16].u_px, 90) << "right ear";
+  EXPECT_EQ(Read({{"people", Json::array({unclear})}}).layout, ForeignLayout::kBody25);
+}
+
+TEST_F(ForeignKeypointsTest, FilesLikeOpenPoseHaveOtherLayoutsToo) {
+  ExpectJoints(Read({{"people", Json::array({OpenPosePerson(17)})}}), kOfCoco17);
+  ExpectJoints(Read({{"people", Json::array({OpenPosePerson(26)})}}), kOfHalpe);
 }
 
 TEST_F(ForeignKeypointsTest, LinesOfNumbersInEachLayout) {
