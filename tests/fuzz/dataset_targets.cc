@@ -225,7 +225,7 @@ std::vector<FuzzTarget> FuzzTargets() {
   std::vector<FuzzTarget> all;
   for (const auto& group :
        {NodeTargets(), MessageTargets(), FileTargets(), DatasetTargets(), PictureTargets(),
-        RecordingTargets(), EvaluationTargets(), CalibrationTargets()})
+        RecordingTargets(), KeypointTargets(), EvaluationTargets(), CalibrationTargets()})
     all.insert(all.end(), group.begin(), group.end());
   return all;
 }

@@ -93,7 +93,8 @@ const std::set<std::string> kVocabulary = {
     "--calibration", "INPUT", "--data", "--log", "--out", "--run-dir", "--config", "--json",
     "--plot", "--timing", "--resolved-config", "--write-log",
     // What is compared with what.
-    "--estimate", "--ground-truth", "--times", "--people", "--joints", "--runs", "--solver"};
+    "--estimate", "--ground-truth", "--times", "--people", "--joints", "--runs", "--solver",
+    "--keypoints-left", "--keypoints-right"};
 
 TEST_F(CommandLineTest, EachHelpTextCanBeRead) {
   ASSERT_GE(Programs().size(), 14u);

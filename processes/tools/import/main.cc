@@ -1,5 +1,6 @@
 // airdos-import: makes a log or a data set folder of a recording, or of a data set, perhaps with
 // the people that another program found in it.
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <opencv2/core/utility.hpp>
@@ -51,6 +52,13 @@ void AddTo(CommandLine* app, Arguments* arguments) {
   app->AddFlag("--no-progress", &arguments->no_progress, "do not report progress");
 }
 
+void RequireFolder(const std::string& input) {
+  if (!std::filesystem::is_regular_file(input)) return;  // what is not there is said on opening
+  throw InputError(input +
+                   ": is a file, wanted is the folder of a data set (a log needs no import, a "
+                   "video is given by --video)");
+}
+
 std::unique_ptr<StereoSequence> OpenSequence(const Arguments& arguments, const std::string& input) {
   if (arguments.recording.is_given()) return arguments.recording.Open();
   return OpenStereoSequence(input, {arguments.recording.named_calibration()});
@@ -88,6 +96,7 @@ int Import(InputOptions input, Arguments arguments) {
         "--keypoints-left and --keypoints-right belong together: people who are known in one image "
         "only have no distance");
   }
+  RequireFolder(path);
   const ImportTarget target = ImportTargetOf(options.out);
   options.rules.inputs =
       is_recording ? arguments.recording.paths() : std::vector<std::string>{path};
