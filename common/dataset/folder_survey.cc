@@ -92,6 +92,8 @@ void FindInReadFolder(const ReadFolder& folder, std::vector<UnreadFiles>* unread
       {folder.path, (num_read == 0 ? "holds only " : "holds ") + kinds, num_read == 0});
 }
 
+constexpr char kImport[] = "; airdos-import --keypoints-left reads those of other programs";
+
 std::string Keypoints() {
   return "a .txt file per image with a row `u v confidence ..` per person";
 }
@@ -112,8 +114,8 @@ std::vector<ReadFolder> ReadFolders(const std::string& folder) {
     folders = {{root + (has_letters ? "/image_l" : "/image_0"), images, ".png or .jpg"},
                {root + (has_letters ? "/image_r" : "/image_1"), images, ".png or .jpg"}};
   }
-  folders.push_back({root + "/alphapose_0" + sub, {".txt"}, Keypoints()});
-  folders.push_back({root + "/alphapose_1" + sub, {".txt"}, Keypoints()});
+  folders.push_back({root + "/alphapose_0" + sub, {".txt"}, Keypoints() + kImport});
+  folders.push_back({root + "/alphapose_1" + sub, {".txt"}, Keypoints() + kImport});
   return folders;
 }
 
@@ -178,7 +180,7 @@ void FindOtherFiles(const std::string& folder, std::vector<UnreadFiles>* unread)
                          ending == ".yaml" || ending == ".yml" || ending == ".xml";
     if (!is_data) continue;
     if (ContainsAny(lower, {"keypoint", "alphapose", "openpose", "halpe", "skeleton"})) {
-      add("is not read; expected are alphapose_0 and alphapose_1 with " + Keypoints());
+      add("is not read; expected are alphapose_0 and alphapose_1 with " + Keypoints() + kImport);
     } else if (!has_times && ContainsAny(lower, {"time"})) {
       add("is not read; times are read from times.txt, one per line, in s");
     } else if (!has_truth && ContainsAny(lower, {"pose", "truth", "gt.", "gt_", "trajectory"})) {

@@ -122,6 +122,20 @@ TEST_F(ImportProcessTest, PeopleAreSaidAndReadAgain) {
   EXPECT_NEAR(sequence->Load(2).keypoints_left[0][0].u_px, nose.x(), 1e-3);
 }
 
+// What the check of a data set refuses, keypoints that are not read, is what is to be read now.
+TEST_F(ImportProcessTest, KeypointsInTheDataSetsOwnFolders) {
+  ASSERT_EQ(Import({"-o", Path("set")}).exit_code, 0);
+  for (const char* folder : {"set/alphapose_0", "set/alphapose_1"}) {
+    WritePeople(std::string(folder) + "/alphapose-results.json", {"000001.png"});
+  }
+  ExpectRefused(Run("airdos-import", {Path("set"), "-o", Path("b")}), "airdos-import --keypoints");
+  const Answer answer =
+      Run("airdos-import", {Path("set"), "-o", Path("b"), "--no-progress", "--keypoints-left",
+                            Path("set/alphapose_0"), "--keypoints-right", Path("set/alphapose_1")});
+  EXPECT_EQ(answer.exit_code, 0) << answer.errors;
+  EXPECT_EQ(OpenStereoSequence(Path("b"))->Load(1).keypoints_right.size(), 1u);
+}
+
 TEST_F(ImportProcessTest, ProgressIsShownUnlessUnwanted) {
   std::vector<std::string> arguments = Recording();
   arguments.insert(arguments.end(), {"-o", Path("a.lcm")});

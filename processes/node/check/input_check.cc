@@ -59,7 +59,8 @@ FindingList CheckInput(const std::string& path, const CheckOptions& options) {
 }
 
 void CheckBeforeRun(const std::string& path, const std::string& calibration,
-                    const std::function<void(const std::string&)>& say) {
+                    const std::function<void(const std::string&)>& say,
+                    const std::function<bool(const Finding&)>& concerns) {
   CheckOptions options;
   options.depth = CheckOptions::Depth::kQuick;
   options.calibration = calibration;
@@ -69,6 +70,7 @@ void CheckBeforeRun(const std::string& path, const std::string& calibration,
   for (const Finding& finding : findings.findings()) {
     // Assumptions are reported by the source itself, checked or not. And in a damaged log every
     // intact event is worth playing, for example in a recording that ended with a power cut.
+    if (concerns && !concerns(finding)) continue;
     const bool is_known = finding.kind == kAssumedKind;
     const bool is_survived = finding.kind == kLogDamagedKind;
     if (finding.severity == Severity::kError && !is_survived) {

@@ -69,7 +69,13 @@ void Check(const Arguments& arguments, const std::string& input) {
   if (arguments.recording.is_given()) {
     CheckRecordingBeforeRun(*arguments.recording.Open(), Say);
   } else {
-    CheckBeforeRun(input, arguments.recording.named_calibration(), Say);
+    // Its own keypoints do not matter where others take their place, nor do files that are not
+    // read: the others may be among them.
+    const auto concerns = [&arguments](const Finding& finding) {
+      return arguments.keypoints_left.empty() ||
+             (finding.kind.rfind("keypoints.", 0) != 0 && finding.kind != "folder.unread");
+    };
+    CheckBeforeRun(input, arguments.recording.named_calibration(), Say, concerns);
   }
 }
 
