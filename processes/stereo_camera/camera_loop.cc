@@ -19,7 +19,8 @@ namespace {
 
 constexpr double kStatusPeriod_s = 1;
 constexpr double kTakeTimeout_s = 0.05;
-constexpr int kMaxDrained = 1000;  // messages received in one go
+constexpr std::size_t kMaxTextBytes = 500;  // STATUS takes no text that is much longer
+constexpr int kMaxDrained = 1000;           // messages received in one go
 /// Limit of the sending rate: a burst of several images overflows the receivers' socket buffers
 /// (200 kB with a stock kernel) before their threads run.
 constexpr double kMaxBytesPerSecond = 30e6;
@@ -124,12 +125,14 @@ void CameraLoop::PublishStatus(std::int8_t state) {
                             static_cast<double>(std::max<std::int64_t>(1, status.num_frames_done));
   status.memory_mb = ResidentMemory_mb();
   if (capture_->is_lost()) status.waiting_for = "camera";
-  status.last_error = last_error_.substr(0, 500);
+  status.last_error = last_error_.substr(0, kMaxTextBytes);
+  status.warnings.assign(warnings_.begin(), warnings_.end());
+  status.num_warnings = static_cast<std::int32_t>(status.warnings.size());
   channel_status_t camera = {};
   camera.channel = "camera";
   camera.num_received = counters.num_captured + counters.num_unusable;
   camera.num_rejected = counters.num_unusable + num_misfits_;
-  camera.last_reject = counters.last_unusable.substr(0, 500);
+  camera.last_reject = counters.last_unusable.substr(0, kMaxTextBytes);
   status.channels.push_back(camera);
   status.num_channels = 1;
   const std::vector<std::uint8_t> bytes = Encode(status);
@@ -137,9 +140,17 @@ void CameraLoop::PublishStatus(std::int8_t state) {
 }
 
 void CameraLoop::SayNotes() {
-  for (const std::string& note : capture_->TakeNotes()) log_->Relay(note);
-  for (const std::string& note : messages_->TakeNotes()) log_->Relay(note);
-  for (const std::string& note : lag_.TakeNotes()) log_->Relay(note);
+  for (const std::string& note : capture_->TakeNotes()) Say(note);
+  for (const std::string& note : messages_->TakeNotes()) Say(note);
+  for (const std::string& note : lag_.TakeNotes()) Say(note);
+}
+
+void CameraLoop::Say(const std::string& note) {
+  const std::string warning = "warning: ";
+  log_->Relay(note);
+  if (note.compare(0, warning.size(), warning) != 0) return;
+  warnings_.push_back(note.substr(warning.size(), kMaxTextBytes));
+  if (warnings_.size() > Node::kMaxWarnings) warnings_.pop_front();
 }
 
 std::string CameraLoop::Tally() const {

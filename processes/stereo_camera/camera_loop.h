@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <set>
 #include <string>
 
@@ -38,6 +39,7 @@ class CameraLoop {
   void PublishStatus(std::int8_t state);
   void PublishStatusWhenDue();
   void SayNotes();
+  void Say(const std::string& note);
   std::string Tally() const;
 
   CameraCapture* capture_;
@@ -54,6 +56,7 @@ class CameraLoop {
   std::int64_t num_not_published_ = 0;  // messages that the network did not accept
   std::set<std::int64_t> namesakes_;    // process ids
   std::string last_error_;
+  std::deque<std::string> warnings_;  // the newest, for STATUS
 };
 
 }  // namespace airdos

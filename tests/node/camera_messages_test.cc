@@ -154,6 +154,10 @@ TEST(CameraMessagesTest, WhatDoesNotFitIsLeftOutWithoutAGap) {
   const std::vector<Envelope> messages = camera.Pack(MakePair(2));
   EXPECT_EQ(ChannelsOf(messages), (Channels{"CALIBRATION", "CAMERA_LEFT", "CAMERA_RIGHT"}));
   EXPECT_EQ(Only<image_t>("CAMERA_LEFT", messages).seq, 0);
+  CameraMessages other(&rectifier, options);
+  EXPECT_LT(Only<image_t>("CAMERA_LEFT", messages).num_bytes,
+            Only<image_t>("CAMERA_LEFT", other.Pack(MakePair(2))).num_bytes)
+      << "the last quality that was tried is gone on with";
 }
 
 process_status_t StatusOf(const std::string& process, std::int64_t seq, std::int64_t utime) {
@@ -203,7 +207,7 @@ TEST(LagWatchTest, WhoHasNothingToDoWithItCountsForNothing) {
   EXPECT_EQ(watch.TakeNotes(), Channels{});
 }
 
-/// Pairs at once, and then the end.
+/// A damaged pair, pairs at once, and then the end.
 class BurstGrabber : public FrameGrabber {
  public:
   explicit BurstGrabber(int count) : left_(count) {}
@@ -211,32 +215,42 @@ class BurstGrabber : public FrameGrabber {
   std::pair<int, int> image_size() const override { return {kWidth, kHeight}; }
   Grabbed Grab() override {
     if (left_ == 0) return {Grabbed::State::kEnded, {}, ""};
+    if (!is_damage_over_) {
+      is_damage_over_ = true;
+      return {Grabbed::State::kUnusable, {}, "burst: half an image"};
+    }
     return {Grabbed::State::kPair, MakePair(1000 * (100 - left_--)), ""};
   }
   std::string Reopen() override { return ""; }
 
  private:
   int left_;
+  bool is_damage_over_ = false;
 };
 
 TEST(CameraLoopTest, WhatWasCapturedIsPublishedOrCountedAsDropped) {
   constexpr int kPairs = 12;
   LcmTransport transport("memq://");
   std::set<std::int64_t> left, right;
-  const auto images = [](std::set<std::int64_t>* seqs) {
-    return [seqs](const void* data, std::size_t size, std::int64_t) {
+  process_status_t last{};
+  // All of them: the loop itself has a handler for STATUS.
+  transport.SubscribeAll([&](const std::string& channel, const void* data, std::size_t size, auto) {
+    if (channel == "STATUS") {
+      ASSERT_TRUE(Decode(data, size, &last));
+      EXPECT_EQ(Validate(last), "");
+    } else if (channel == "CAMERA_LEFT" || channel == "CAMERA_RIGHT") {
       image_t image;
       ASSERT_TRUE(Decode(data, size, &image));
-      EXPECT_TRUE(seqs->insert(image.seq).second);
-    };
-  };
-  transport.Subscribe("CAMERA_LEFT", images(&left));
-  transport.Subscribe("CAMERA_RIGHT", images(&right));
+      EXPECT_TRUE((channel == "CAMERA_LEFT" ? left : right).insert(image.seq).second);
+    }
+  });
   std::ostringstream said;
   const ProcessLog log("camera", LogLevel::kInfo, LogStyle::kJournal, &said, [] { return 0; });
   const StereoRectifier rectifier(Rig());
   CameraMessages messages(&rectifier, {});
   CameraCapture capture(std::make_unique<BurstGrabber>(kPairs), {}, 0, [] { return 0; });
+  while (capture.Step()) {
+  }
   CameraLoop loop(&capture, &messages, 0, &transport, &log, "");
   EXPECT_EQ(loop.Run(), 0);
   while (transport.Poll(0)) {
@@ -248,6 +262,17 @@ TEST(CameraLoopTest, WhatWasCapturedIsPublishedOrCountedAsDropped) {
   EXPECT_EQ(left.size(), static_cast<std::size_t>(messages.num_packed()));
   EXPECT_EQ(*left.rbegin(), messages.num_packed() - 1) << "without gaps";
   EXPECT_EQ(left, right);
+  EXPECT_EQ(last.state, int{process_status_t::STATE_STOPPING});
+  EXPECT_EQ(last.num_frames_done, messages.num_packed());
+  EXPECT_EQ(last.num_frames_skipped, counters.num_dropped);
+  EXPECT_GT(last.num_frames_skipped, 0) << "all come before the first is taken";
+  ASSERT_EQ(last.channels.size(), 1u);
+  EXPECT_EQ(last.channels[0].channel, "camera");
+  EXPECT_EQ(last.channels[0].num_received, kPairs + 1);
+  EXPECT_EQ(last.channels[0].num_rejected, 1);
+  EXPECT_EQ(last.channels[0].last_reject, "burst: half an image");
+  ASSERT_GE(last.warnings.size(), 1u);
+  EXPECT_EQ(last.warnings[0].find("burst: half an image: left out"), 0u) << last.warnings[0];
   EXPECT_NE(said.str().find("<6>burst: has ended"), std::string::npos) << said.str();
   EXPECT_NE(said.str().find("pairs captured 12, dropped " + std::to_string(counters.num_dropped) +
                             ", published " + std::to_string(messages.num_packed())),

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "airdos/process_status_t.hpp"
 #include "airdos/stereo_calibration_t.hpp"
 #include "processes/node/live/lcm_transport.h"
+#include "processes/node/live/process_usage.h"
 #include "processes/node/message/codec.h"
 #include "processes/node/message/validate.h"
 #include "tests/support/child_process.h"
@@ -32,6 +34,7 @@ constexpr double kDeadline_s = 60;  // far above what is needed, for busy machin
 constexpr int kWidth = 64;
 constexpr int kHeight = 48;
 constexpr double kRate_hz = 20;
+const std::string kProgram = std::string(AIRDOS_BINARY_DIR) + "/bin/airdos-stereo-camera";
 
 class CameraProcessTest : public testing::Test {
  protected:
@@ -87,9 +90,32 @@ class CameraProcessTest : public testing::Test {
   }
 
   std::unique_ptr<ChildProcess> Start(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(),
-                     std::string(AIRDOS_BINARY_DIR) + "/bin/airdos-stereo-camera");
+    arguments.insert(arguments.begin(), kProgram);
     return std::make_unique<ChildProcess>(arguments, (folder_ / "camera").string());
+  }
+  /// The device of tests/support/fake_v4l2.cc, which is there while its file is.
+  static bool CanPreload() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    return false;
+#else
+    return true;
+#endif
+  }
+  std::string device() const { return (folder_ / "video0").string(); }
+  void PlugIn() const { std::ofstream(device()).flush(); }
+  void Unplug() const { fs::remove(device()); }
+  std::unique_ptr<ChildProcess> StartDevice(const std::vector<std::string>& more) const {
+    std::vector<std::string> command = {"env",
+                                        "LD_PRELOAD=" AIRDOS_FAKE_V4L2_LIBRARY,
+                                        "AIRDOS_FAKE_V4L2=" + device(),
+                                        kProgram,
+                                        "--camera",
+                                        device(),
+                                        "--side-by-side",
+                                        "--calibration",
+                                        (folder_ / "calib.json").string()};
+    command.insert(command.end(), more.begin(), more.end());
+    return std::make_unique<ChildProcess>(command, (folder_ / "camera").string());
   }
   std::unique_ptr<ChildProcess> StartVideo(const std::string& video,
                                            const std::vector<std::string>& more = {}) const {
@@ -157,6 +183,59 @@ TEST_F(CameraProcessTest, EndsWhenItIsToldTo) {
   camera->Signal(SIGINT);
   EXPECT_EQ(camera->Wait(kDeadline_s), 0) << camera->Errors();
   EXPECT_NE(camera->Errors().find("pairs captured "), std::string::npos);
+}
+
+// A device through OpenCV's V4L2, unplugged and plugged in again.
+TEST_F(CameraProcessTest, ADeviceIsCapturedLostAndFoundAgain) {
+  if (!CanPreload()) GTEST_SKIP() << "a sanitizer's library must be the first";
+  EnterNetwork();
+  if (IsSkipped()) return;
+  PlugIn();
+  const std::int64_t start_us = WallClock_us();
+  const auto camera = StartDevice({"--capture-size", "128x48", "--pixel-format", "YUYV"});
+  ASSERT_TRUE(HearUntil([&] { return right_.size() >= 5; })) << camera->Errors();
+  EXPECT_GT(left_[0].utime, start_us);
+  EXPECT_LE(left_[4].utime, WallClock_us());
+  EXPECT_EQ(left_[0].width, kWidth);
+  EXPECT_NEAR(cv::mean(cv::imdecode(left_[0].data, cv::IMREAD_GRAYSCALE))[0],
+              (60 - 16) * 255.0 / 219, 2)
+      << "YUYV has black at 16";
+  EXPECT_NEAR(cv::mean(cv::imdecode(right_[0].data, cv::IMREAD_GRAYSCALE))[0],
+              (180 - 16) * 255.0 / 219, 2);
+
+  Unplug();
+  ASSERT_TRUE(HearUntil([&] {
+    return !statuses_.empty() && statuses_.back().state == process_status_t::STATE_STALLED;
+  })) << camera->Errors();
+  EXPECT_EQ(statuses_.back().waiting_for, "camera");
+  ASSERT_TRUE(HearUntil([&] { return camera->HasSaid("video0: No such file or directory"); }));
+  EXPECT_TRUE(camera->HasSaid("warning: " + device() + " is lost: waiting for it"))
+      << camera->Errors();
+  const std::size_t num_before = left_.size();
+  PlugIn();
+  ASSERT_TRUE(HearUntil([&] { return left_.size() >= num_before + 5; })) << camera->Errors();
+  EXPECT_TRUE(camera->HasSaid("going on in the same session")) << camera->Errors();
+  EXPECT_EQ(left_.back().session, left_.front().session);
+  for (std::size_t i = 1; i < left_.size(); ++i) {
+    EXPECT_EQ(left_[i].seq, static_cast<std::int64_t>(i));
+    EXPECT_GT(left_[i].utime, left_[i - 1].utime);
+  }
+  camera->Signal(SIGTERM);
+  EXPECT_EQ(camera->Wait(kDeadline_s), 0) << camera->Errors();
+}
+
+TEST_F(CameraProcessTest, ADeviceThatGivesSomethingElseIsRefused) {
+  if (!CanPreload()) GTEST_SKIP() << "a sanitizer's library must be the first";
+  PlugIn();
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {{"--capture-size", "640x480"}, "video0: gives images of 128x48 px, not 640x480\n"},
+      {{"--pixel-format", "MJPG"}, "video0: does not have the pixel format MJPG\n"},
+      {{"--rate", "10"}, "video0: gives 50 images a second, not 10\n"}};
+  for (const auto& [arguments, text] : cases) {
+    const auto camera = StartDevice(arguments);
+    EXPECT_EQ(camera->Wait(kDeadline_s).value_or(-99), 2) << text;
+    EXPECT_NE(camera->Errors().find(text), std::string::npos) << camera->Errors();
+  }
 }
 
 TEST_F(CameraProcessTest, WhatCannotWorkIsSaidInOneLine) {
