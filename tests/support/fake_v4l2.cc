@@ -1,7 +1,7 @@
 // A stereo camera of Video4Linux for programs that are started with this library in LD_PRELOAD:
 // what they open at the path in AIRDOS_FAKE_V4L2 delivers 128 x 48 pixels in YUYV, 50 images a
-// second, the left half dark and the right one bright. It is unplugged while there is no such file.
-// Only what OpenCV asks of a device is answered.
+// second, the left half dark and the right one bright, each captured 0.3 s before. It is unplugged
+// while there is no such file. Only what OpenCV asks of a device is answered.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <linux/videodev2.h>
@@ -28,6 +28,7 @@ constexpr std::uint32_t kRate_hz = 50;
 constexpr std::size_t kBytes = 2 * kWidth * kHeight;
 constexpr std::size_t kPage = 4096;
 constexpr std::uint32_t kMostBuffers = 8;
+constexpr std::int64_t kAge_us = 300000;
 constexpr std::uint8_t kDark = 60;
 constexpr std::uint8_t kBright = 180;
 
@@ -99,7 +100,8 @@ int Dequeue(v4l2_buffer* buffer) {
   buffer->length = kBytes;
   timespec now = {};
   clock_gettime(CLOCK_MONOTONIC, &now);
-  buffer->timestamp = {now.tv_sec, now.tv_nsec / 1000};
+  const std::int64_t stamp_us = 1000000 * now.tv_sec + now.tv_nsec / 1000 - kAge_us;
+  buffer->timestamp = {stamp_us / 1000000, stamp_us % 1000000};
   FillImage(static_cast<std::uint8_t*>(buffers[buffer->index]));
   return 0;
 }
