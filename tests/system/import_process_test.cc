@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -73,12 +74,17 @@ class ImportProcessTest : public testing::Test {
     std::ifstream file(Path(name), std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
   }
-  /// AlphaPose's results: somebody in the middle of the images that are given.
-  std::string WritePeople(const std::string& name, const std::vector<std::string>& images) const {
+  /// AlphaPose's results: somebody in each of the images, with the nose at this column; of
+  /// those who are in the same one, each below the other.
+  std::string WritePeople(const std::string& name, const std::vector<std::string>& images,
+                          double u_px = 150) const {
     nlohmann::json list = nlohmann::json::array();
+    std::map<std::string, int> count;
     for (const std::string& image : images) {
+      const int lower_px = 25 * count[image]++;
       nlohmann::json joints = nlohmann::json::array();
-      for (int j = 0; j < 17; ++j) joints.insert(joints.end(), {150 + j, 90 + j, 0.8});
+      for (int j = 0; j < 17; ++j)
+        joints.insert(joints.end(), {u_px + 3 * j, 60 + 5 * j + lower_px, 0.8});
       list.push_back({{"image_id", image}, {"keypoints", joints}, {"score", 2.9}, {"idx", "1"}});
     }
     return folder_.Write(name, list.dump());
@@ -118,7 +124,7 @@ TEST_F(ImportProcessTest, PeopleAreSaidAndReadAgain) {
   EXPECT_EQ(sequence->Load(1).keypoints_left.size(), 0u);
   ASSERT_EQ(sequence->Load(2).keypoints_left.size(), 1u);
   EXPECT_EQ(sequence->Load(3).keypoints_right.size(), 1u);
-  const Eigen::Vector2d nose = StereoRectifier(distorted_.rig()).RectifyLeft({150, 90});
+  const Eigen::Vector2d nose = StereoRectifier(distorted_.rig()).RectifyLeft({150, 60});
   EXPECT_NEAR(sequence->Load(2).keypoints_left[0][0].u_px, nose.x(), 1e-3);
 }
 
@@ -134,6 +140,26 @@ TEST_F(ImportProcessTest, KeypointsInTheDataSetsOwnFolders) {
                             Path("set/alphapose_0"), "--keypoints-right", Path("set/alphapose_1")});
   EXPECT_EQ(answer.exit_code, 0) << answer.errors;
   EXPECT_EQ(OpenStereoSequence(Path("b"))->Load(1).keypoints_right.size(), 1u);
+}
+
+// The disparity of people cannot be negative.
+TEST_F(ImportProcessTest, ExchangedPeopleAreSaidOfWhatWasWritten) {
+  std::vector<std::string> names;
+  for (int k = 0; k < 2 * kNumPairs; ++k) names.push_back(std::to_string(k % kNumPairs));
+  const std::string left = WritePeople("left.json", names, 120);
+  const std::string right = WritePeople("right.json", names, 100);
+  ASSERT_EQ(Import({"-o", Path("set")}).exit_code, 0);
+  const auto import = [&](const std::string& out, const std::string& a, const std::string& b) {
+    return Run("airdos-import", {Path("set"), "-o", Path(out), "--no-progress", "--keypoints-left",
+                                 a, "--keypoints-right", b});
+  };
+  const Answer good = import("good", left, right);
+  EXPECT_EQ(good.exit_code, 0) << good.errors;
+  for (const char* out : {"bad", "bad.lcm"}) {
+    const Answer exchanged = import(out, right, left);
+    EXPECT_EQ(exchanged.exit_code, 2);
+    EXPECT_TRUE(Holds(exchanged.errors, "keypoints are exchanged")) << exchanged.errors;
+  }
 }
 
 TEST_F(ImportProcessTest, ProgressIsShownUnlessUnwanted) {

@@ -79,6 +79,22 @@ void Check(const Arguments& arguments, const std::string& input) {
   }
 }
 
+/// Of what was written: exchanged left and right, people of other images, which no run would take.
+void CheckPeople(const std::string& out) {
+  CheckOptions options;
+  options.max_frames = 1;  // pictures have been checked
+  options.odometry_frames = 0;
+  const FindingList findings = CheckInput(out, options);
+  for (const Finding& finding : findings.findings()) {
+    if (finding.kind.rfind("keypoints.", 0) != 0 || finding.severity == Severity::kNote) continue;
+    const std::string text = (finding.where.empty() ? out : finding.where) + ": " + finding.what;
+    if (finding.severity == Severity::kError) {
+      throw InputError(text + "; it is written, but these keypoints are of no use");
+    }
+    Say("warning: " + text);
+  }
+}
+
 std::unique_ptr<StereoSequence> WithKeypoints(std::unique_ptr<StereoSequence> sequence,
                                               const Arguments& arguments) {
   if (arguments.keypoints_left.empty()) return sequence;
@@ -123,7 +139,8 @@ int Import(InputOptions input, Arguments arguments) {
   const auto import = target == ImportTarget::kLog ? ImportToLog : ImportToFolder;
   const ImportResult result = import(std::move(sequence), name, options);
   std::cout << options.out << ": " << result.num_frames << " frames of " << camera.width << " x "
-            << camera.height << " px\n";
+            << camera.height << " px" << std::endl;
+  if (!arguments.keypoints_left.empty() && !arguments.check.is_off) CheckPeople(options.out);
   return 0;
 }
 
