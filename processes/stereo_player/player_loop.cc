@@ -170,6 +170,7 @@ void PlayerLoop::WaitForTime(const Header& header) {
     gap_s = 0;
   }
   pace_ = {pace_->first + gap_s / options_.speed, header.utime};
+  Listen(0);  // also where it is late
   for (double left_s = pace_->first - SteadyClock_s(); left_s > 0 && !StopRequested();
        left_s = pace_->first - SteadyClock_s()) {
     Listen(std::min(kPollTimeout_ms, static_cast<int>(1e3 * std::min(left_s, 1.0)) + 1));
