@@ -17,7 +17,8 @@ if(AIRDOS_BUILD_FUZZERS)
     message(FATAL_ERROR "AIRDOS_BUILD_FUZZERS needs clang, which brings libFuzzer: install clang and configure with "
                         "-DCMAKE_CXX_COMPILER=clang++ in a build folder of its own, or run launch_scripts/fuzz.sh")
   endif()
-  set(airdos_fuzzer_flags -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  set(airdos_fuzzer_flags -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+      -fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/cmake/sanitizer_ignorelist.txt)
   # g++ is the judge of warnings; clang knows others.
   target_compile_options(airdos_options INTERFACE ${airdos_fuzzer_flags} -fsanitize=fuzzer-no-link -Wno-everything)
   target_link_options(airdos_options INTERFACE ${airdos_fuzzer_flags})

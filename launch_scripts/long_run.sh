@@ -77,18 +77,24 @@ sample() {
   echo "$row" >> "$run_dir/memory.tsv"
 }
 
+# die_of TEXT: with what run_live.sh said last.
+die_of() {
+  tail -n 5 "$run_dir/run_live.log" >&2
+  die "$1: see $run_dir/run_live.log"
+}
+
 SECONDS=0
 while ((SECONDS < minutes * 60)) && kill -0 "$live_pid" 2> /dev/null; do
   sleep "$sample_period_s"
   sample
 done
-kill -0 "$live_pid" 2> /dev/null || die "the run ended early: see $run_dir/run_live.log"
+kill -0 "$live_pid" 2> /dev/null || die_of "the run ended early"
 kill -TERM "$live_pid"
 code=0
 wait "$live_pid" || code=$?
 trap - EXIT
-((code == 0)) || die "a process ended badly: see $run_dir/run_live.log"
-[[ -s $run_dir/memory.tsv ]] || die "nothing was measured: see $run_dir/run_live.log"
+((code == 0)) || die_of "a process ended badly"
+[[ -s $run_dir/memory.tsv ]] || die_of "nothing was measured"
 
 # number PROCESS REGEX: the number after REGEX in a process' final messages; the sum if there are several.
 number() { sed -n "s/^[^ ]* airdos-$1: info: .*$2\([0-9.]*\).*/\1/p" "$run_dir/$1.log" | awk '{ sum += $1 } END { print sum + 0 }'; }

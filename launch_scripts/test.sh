@@ -42,13 +42,29 @@ print_skipped() {
     ' "$1/Testing/Temporary/LastTest.log"
 }
 
-# run_tests FOLDER [CTEST OPTIONS…]: as ctest does it, but with the reasons for skips, and the closing line last.
+# print_failed FOLDER: the last lines of each failed test, from the same log: what ctest says of it stands thousands of lines above.
+print_failed() {
+  awk -v max_lines=12 '
+    /^[0-9]+\/[0-9]+ Test: / { name = $3; num_lines = inside = 0 }
+    /^<end of output>$/      { inside = 0 }
+    inside                   { lines[num_lines++] = $0 }
+    /^Output:$/              { getline; inside = 1 }
+    /^Test Failed\.$/ && name {
+      print "  failed: " name
+      for (i = num_lines > max_lines ? num_lines - max_lines : 0; i < num_lines; i++) print "    " substr(lines[i], 1, 300)
+      name = ""
+    }
+    ' "$1/Testing/Temporary/LastTest.log"
+}
+
+# run_tests FOLDER [CTEST OPTIONS…]: as ctest does it, but with the reasons for skips and failures, and the closing line last.
 run_tests() {
   local folder=$1 failed=no
   shift
   ctest --test-dir "$folder" --output-on-failure --no-label-summary -j "$(nproc)" "$@" 2>&1 < /dev/null |
     tee "$folder/ctest.log" | sed '/% tests passed,/,$d' || failed=yes
   sed '1,/% tests passed,/d; /^Errors while running CTest/d; /^$/d' "$folder/ctest.log"
+  print_failed "$folder"
   print_skipped "$folder"
   grep '% tests passed,' "$folder/ctest.log" || die "ctest came to no result (log: $folder/ctest.log)"
   [[ $failed == no ]]

@@ -4,6 +4,7 @@
 #include "common/calibration/rig_judge.h"
 #include "common/util/error.h"
 #include "common/util/input_file.h"
+#include "common/util/words.h"
 
 namespace airdos {
 namespace {
@@ -16,13 +17,6 @@ CalibrationText ReadText(const std::string& path) {
   if (text.rfind("\xFF\xFE", 0) == 0 || text.rfind("\xFE\xFF", 0) == 0)
     throw InputError(path + ": is UTF-16: save it as UTF-8");
   return {path, text};
-}
-
-std::string FormatList() {
-  std::string list;
-  for (const std::string& format : CalibrationFormats())
-    list += (list.empty() ? "" : ", ") + format;
-  return list;
 }
 
 [[noreturn]] void NeedsBoth(const std::string& path, const std::string& format) {
@@ -59,7 +53,7 @@ StereoRig ReadJson(const CalibrationText& file, const FormatOptions& options) {
   if (has("reprojection error") && has("baseline T_1_0"))
     throw InputError(file.path + ": is Kalibr's report; give the camchain .yaml beside it");
   throw InputError(file.path + ": is no calibration file of a stereo pair that is known (" +
-                   FormatList() + ")");
+                   JoinWords(CalibrationFormats(), ", ") + ")");
 }
 
 StereoRig ReadOne(const CalibrationText& file, const FormatOptions& options) {

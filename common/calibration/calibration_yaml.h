@@ -37,8 +37,8 @@ class CalibrationYaml {
   const std::string& path() const { return path_; }
 
  private:
-  CalibrationYaml(std::string path, std::string prefix, YAML::Node node)
-      : path_(std::move(path)), prefix_(std::move(prefix)), node_(std::move(node)) {}
+  CalibrationYaml(std::string path, std::string prefix, const YAML::Node& node)
+      : path_(std::move(path)), prefix_(std::move(prefix)), node_(node) {}
   YAML::Node At(const std::string& key) const;
 
   std::string path_;

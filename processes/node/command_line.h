@@ -7,7 +7,7 @@
 #include <vector>
 
 // Every file that includes CLI11 takes seconds longer to compile: command_line.cc alone does.
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): CLI11's
 class App;
 class Option;
 }  // namespace CLI

@@ -22,7 +22,7 @@ trap finish TERM
 fails state || for name in pid frontend human-tracker optimizer map-recorder; do echo "\$name=\$\$"; done > "$results/state"
 exec 3<> "$work/run_live.fifo"
 echo "\$\$" > "$work/started"
-fails early && exit 0
+fails early && echo "run_live.sh: why it ends" && exit 0
 read -r -u 3
 FAKE
 }
@@ -152,6 +152,7 @@ bad_run_fails() {
   local name
   good_figures
   FAILS=early long_run 1 "the run ended early: see $results/run_live.log"
+  says err "run_live.sh: why it ends"
   good_figures
   FAILS=end long_run 1 "a process ended badly: see $results/run_live.log"
   # That there are figures of an earlier run changes nothing.

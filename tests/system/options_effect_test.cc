@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <opencv2/core/utility.hpp>
+#include <ostream>
 #include <set>
 #include <sstream>
 #include <string>
@@ -39,6 +40,8 @@ struct Process {
   std::string name;
   std::unique_ptr<Node> (*make)(ConfigReader*);
 };
+/// In names of tests; else GoogleTest shows the bytes, which differ from run to run.
+void PrintTo(const Process& process, std::ostream* out) { *out << process.name; }
 const Process kProcesses[] = {{"human_tracker", MakeHumanTrackerNode},
                               {"frontend", MakeFrontendNode},
                               {"optimizer", MakeOptimizerNode}};

@@ -63,7 +63,8 @@ def is_heard_by_lcm(folder, programs):
     recorder.terminate()
     recorder.communicate(timeout=DEADLINE_S)
     recorded = [event.data for event in LogReader(path) if event.channel == CHANNEL]
-    expect(recorded == [payload(size) for size in SIZES], "LCM's library hears other bytes than were sent")
+    sizes = [len(data) for data in recorded]
+    expect(recorded == [payload(size) for size in SIZES], f"LCM's library hears other bytes than were sent: of sizes {sizes}")
 
 
 def says_where_there_is_nothing():

@@ -440,6 +440,21 @@ TESTS
   ends_with out '100% tests passed, 0 tests failed out of 3'
 }
 
+test_ends_with_what_failures_said() {
+  all_is_well
+  tests_of build << 'TESTS'
+wrong unit i=0; while [ $i -lt 20 ]; do echo line $i; i=$((i + 1)); done; exit 1
+good unit echo nothing
+TESTS
+  run 1 "$test"
+  says out '  failed: wrong'
+  says out '    line 8'
+  says out '    line 19'
+  ! sed -n '/^  failed: /,$p' "$work/out" | grep -q 'line 7$' || fail "more than the last lines: $(cat "$work/out")"
+  (($(grep -c 'failed: ' "$work/out") == 1)) || fail "other failures: $(cat "$work/out")"
+  ends_with out '50% tests passed, 1 tests failed out of 2'
+}
+
 # no_result FOLDER ARGUMENT…: there is no test at all, so that ctest says nothing of how many passed.
 no_result() {
   local folder=$1
@@ -511,6 +526,7 @@ test_fails_where_a_fuzz_target_does
 test_fails_where_the_normal_build_does
 test_says_that_there_is_no_clang
 test_gives_the_reasons_for_skips
+test_ends_with_what_failures_said
 test_without_a_result_is_no_success
 test_ends_where_a_build_fails
 test_leaves_out_what_it_is_told_to

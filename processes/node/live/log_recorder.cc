@@ -2,9 +2,11 @@
 
 #include <unistd.h>
 
+#include <cstring>
 #include <iomanip>
 #include <optional>
 #include <sstream>
+#include <vector>
 
 #include "airdos/process_status_t.hpp"
 #include "common/util/error.h"
@@ -23,6 +25,8 @@ namespace {
 constexpr char kProcessName[] = "airdos-record";
 constexpr int kPollTimeout_ms = 50;
 constexpr double kStatusPeriod_s = 1.0;
+// For our own last message to come back; it may be lost.
+constexpr double kMaxWaitForOwnEcho_s = 5.0;
 
 // The writer replaces an existing file.
 const std::string& CheckedPath(const LogRecorderOptions& options) {
@@ -46,8 +50,9 @@ bool CarriesEveryImage(const std::string& channel) {
          channel == channel::kCameraRight;
 }
 
-void PublishStatus(const LogRecorder& recorder, LcmTransport* transport, std::int8_t state,
-                   const std::string& error) {
+// Returns the bytes that were sent.
+std::vector<std::uint8_t> PublishStatus(const LogRecorder& recorder, LcmTransport* transport,
+                                        std::int8_t state, const std::string& error) {
   process_status_t status = {};
   status.process = kProcessName;
   status.version = kVersion;
@@ -64,8 +69,9 @@ void PublishStatus(const LogRecorder& recorder, LcmTransport* transport, std::in
     status.channels.push_back(channel);
   }
   status.num_channels = static_cast<std::int32_t>(status.channels.size());
-  const std::vector<std::uint8_t> bytes = Encode(status);
+  std::vector<std::uint8_t> bytes = Encode(status);
   transport->Publish(channel::kStatus, bytes.data(), bytes.size());
+  return bytes;
 }
 
 }  // namespace
@@ -141,9 +147,15 @@ std::string LogRecorder::Summary() const {
 int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, std::ostream* out,
                    const ProcessLog& log, ServiceNotifier* service) {
   LogRecorder recorder(options);
-  transport->SubscribeAll([&recorder](const std::string& channel, const void* data,
-                                      std::size_t size, std::int64_t receive_utime) {
+  std::vector<std::uint8_t> farewell;
+  bool farewell_is_back = false;
+  transport->SubscribeAll([&](const std::string& channel, const void* data, std::size_t size,
+                              std::int64_t receive_utime) {
     recorder.Take(channel, data, size, receive_utime);
+    if (!farewell.empty() && size == farewell.size() &&
+        std::memcmp(data, farewell.data(), size) == 0) {
+      farewell_is_back = true;
+    }
   });
   *out << kProcessName << " READY version " << kVersion << " url " << transport->url() << " file "
        << options.path << std::endl;
@@ -164,9 +176,11 @@ int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, s
       }
       transport->Poll(kPollTimeout_ms);
     }
-    // What arrived before the signal is still recorded.
-    while (transport->Poll(0)) {
-    }
+    // What was sent before the signal is still recorded, also where it waits in the kernel because
+    // this process had no turn: datagrams keep their order, so all of it comes before our own.
+    farewell = PublishStatus(recorder, transport, process_status_t::STATE_STOPPING, "");
+    const double deadline_s = SteadyClock_s() + kMaxWaitForOwnEcho_s;
+    while (!farewell_is_back && SteadyClock_s() < deadline_s) transport->Poll(kPollTimeout_ms);
     recorder.Sync();
   } catch (const WriteError& failure) {
     error = failure.what();
