@@ -90,7 +90,7 @@ function(airdos_test name tier)
   add_dependencies(airdos_tests_${tier} ${name})
   set(properties LABELS ${tier} TIMEOUT ${AIRDOS_TEST_TIMEOUT_S} COST ${ARG_COST})
   if(AIRDOS_SANITIZE OR AIRDOS_BUILD_FUZZERS)
-    # All tests of a program in one process: to start a sanitized one for each would take a quarter of the time.
+    # All tests of a program in one process: to start a sanitized one for each took half of the time.
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES ${properties})
   else()
