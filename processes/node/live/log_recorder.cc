@@ -181,6 +181,9 @@ int RunLogRecorder(LcmTransport* transport, const LogRecorderOptions& options, s
     farewell = PublishStatus(recorder, transport, process_status_t::STATE_STOPPING, "");
     const double deadline_s = SteadyClock_s() + kMaxWaitForOwnEcho_s;
     while (!farewell_is_back && SteadyClock_s() < deadline_s) transport->Poll(kPollTimeout_ms);
+    if (!farewell_is_back) {
+      log.Warning("this program's own last message did not come back: others may be missing too");
+    }
     recorder.Sync();
   } catch (const WriteError& failure) {
     error = failure.what();
