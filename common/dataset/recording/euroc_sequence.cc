@@ -9,6 +9,7 @@
 #include "common/calibration/calibration_yaml.h"
 #include "common/calibration/rigid_matrix.h"
 #include "common/dataset/recording/folder_recording.h"
+#include "common/dataset/recording/recording_times.h"
 #include "common/dataset/recording/rectified_sequence.h"
 #include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
@@ -40,16 +41,7 @@ struct TimedBody {
 };
 
 TimedBody ParseBody(const std::string& path, const TextLine& line) {
-  TextLine split;
-  split.number = line.number;
-  for (const std::string& word : line.words) {
-    std::size_t begin = 0;
-    while (begin <= word.size()) {
-      const std::size_t end = std::min(word.find(',', begin), word.size());
-      if (end > begin) split.words.push_back(word.substr(begin, end - begin));
-      begin = end + 1;
-    }
-  }
+  TextLine split{line.number, ColumnsOf(line)};
   const std::string where = path + ":" + std::to_string(line.number) + ": ";
   constexpr std::size_t kNumColumns = 8;
   if (split.words.size() < kNumColumns) {

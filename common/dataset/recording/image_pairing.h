@@ -16,8 +16,9 @@ struct PairedImages {
 };
 
 /// Pairs images by the number in their names; where these are times of each camera's own, with the
-/// nearest one up to a quarter of the usual step away. Never by rank. Images without partner are
-/// left out, with a note. Throws InputError where half of the images or more have none.
+/// nearest one up to a quarter of the usual step away. Never by rank, but for a single image each.
+/// Images without partner are left out, with a note. Throws InputError where half of the images or
+/// more have none.
 PairedImages PairImages(const ImageNames& left, const ImageNames& right);
 
 /// The images of one folder that holds both cameras': names with left and right, or l and r, as a

@@ -33,23 +33,6 @@ std::string Where(const std::string& path, const Row& row) {
   return path + ":" + std::to_string(row.line) + ": ";
 }
 
-/// The words of a line between blanks, commas and semicolons.
-std::vector<std::string> Columns(const TextLine& line) {
-  std::vector<std::string> columns;
-  for (const std::string& word : line.words) {
-    std::string column;
-    for (const char c : word + ",") {
-      if (c != ',' && c != ';') {
-        column += c;
-        continue;
-      }
-      if (!column.empty()) columns.push_back(column);
-      column.clear();
-    }
-  }
-  return columns;
-}
-
 bool IsNumber(const std::string& word) {
   char* end = nullptr;
   const double number = std::strtod(word.c_str(), &end);
@@ -72,7 +55,7 @@ bool IsDate(const std::string& word) {
 
 /// What a line holds; nothing if it is neither a time nor a time and a file name.
 std::optional<Row> ParseRow(const TextLine& line) {
-  const std::vector<std::string> columns = Columns(line);
+  const std::vector<std::string> columns = ColumnsOf(line);
   Row row;
   row.line = line.number;
   std::vector<std::string> times;
@@ -100,6 +83,12 @@ std::int64_t DaysSince1970(int year, int month, int day) {
   return 365 * y + y / 4 - y / 100 + y / 400 + day_of_year - 719468;
 }
 
+int DaysOfMonth(int year, int month) {
+  const auto [next_year, next_month] =
+      month == 12 ? std::make_pair(year + 1, 1) : std::make_pair(year, month + 1);
+  return static_cast<int>(DaysSince1970(next_year, next_month, 1) - DaysSince1970(year, month, 1));
+}
+
 bool ParseDate(const std::string& text, std::int64_t* utime) {
   int year = 0, month = 0, day = 0, hour = 0, minute = 0, length = 0;
   if (std::sscanf(text.c_str(), "%4d%*1[-/]%2d%*1[-/]%2d %2d:%2d:%n", &year, &month, &day, &hour,
@@ -111,8 +100,8 @@ bool ParseDate(const std::string& text, std::int64_t* utime) {
   if (!ParseMicroseconds(text.substr(static_cast<std::size_t>(length)), &second_us)) return false;
   const auto lies_in = [](int value, int from, int to) { return value >= from && value <= to; };
   constexpr std::int64_t kEnd_us = 61000000;  // of a minute with a leap second
-  if (year < 0 || !lies_in(month, 1, 12) || !lies_in(day, 1, 31) || !lies_in(hour, 0, 23) ||
-      !lies_in(minute, 0, 59) || second_us < 0 || second_us >= kEnd_us) {
+  if (year < 0 || !lies_in(month, 1, 12) || !lies_in(day, 1, DaysOfMonth(year, month)) ||
+      !lies_in(hour, 0, 23) || !lies_in(minute, 0, 59) || second_us < 0 || second_us >= kEnd_us) {
     return false;
   }
   *utime = ((DaysSince1970(year, month, day) * 24 + hour) * 60 + minute) * 60000000 + second_us;
@@ -147,7 +136,7 @@ std::vector<Row> ReadRows(const std::string& path) {
   bool is_first = true;
   for (const TextLine& line : ReadTextLines(path)) {
     std::optional<Row> row = ParseRow(line);
-    const std::vector<std::string> columns = Columns(line);
+    const std::vector<std::string> columns = ColumnsOf(line);
     const bool is_heading =
         is_first && std::none_of(columns.begin(), columns.end(), [](const std::string& column) {
           return std::isdigit(static_cast<unsigned char>(column[0])) != 0;
@@ -180,6 +169,22 @@ void CheckIncrease(const std::string& path, const std::vector<Row>& rows,
 }
 
 }  // namespace
+
+std::vector<std::string> ColumnsOf(const TextLine& line) {
+  std::vector<std::string> columns;
+  for (const std::string& word : line.words) {
+    std::string column;
+    for (const char c : word + ",") {
+      if (c != ',' && c != ';') {
+        column += c;
+        continue;
+      }
+      if (!column.empty()) columns.push_back(column);
+      column.clear();
+    }
+  }
+  return columns;
+}
 
 RecordingTimes ReadRecordingTimes(const std::string& path) {
   const std::vector<Row> rows = ReadRows(path);

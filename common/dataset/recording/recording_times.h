@@ -8,8 +8,12 @@
 #include <vector>
 
 #include "common/dataset/image_names.h"
+#include "common/util/text_file.h"
 
 namespace airdos {
+
+/// The words of a line between blanks, commas and semicolons.
+std::vector<std::string> ColumnsOf(const TextLine& line);
 
 /// A file with the times of images, as cameras and other programs write them.
 struct RecordingTimes {

@@ -102,6 +102,7 @@ TEST_F(RecordingTest, AFileOfTimesThatIsNoneIsRefused) {
 TEST_F(RecordingTest, DatesThatAreNoneAreRefused) {
   for (const std::string date :
        {"2011-13-26 13:02:25.9", "2011-00-26 13:02:25.9", "2011-09-32 13:02:25.9",
+        "2011-09-31 13:02:25.9", "2011-02-29 13:02:25.9", "2011-12-32 13:02:25.9",
         "2011-09-00 13:02:25.9", "2011-09-26 24:02:25.9", "2011-09-26 13:60:25.9",
         "2011-09-26 13:02:61.0", "2011-09-26 13:02:-1.0", "2011-09-26 13:02:", "2011-09-26 13.2"}) {
     EXPECT_TRUE(Holds(ErrorOf([&] { ReadRecordingTimes(Write("t.txt", date + "\n")); }),
