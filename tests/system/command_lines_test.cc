@@ -53,7 +53,7 @@ class CommandLineTest : public testing::Test {
     if (program == "airdos-map") return {{}, {"info"}, {"export"}, {"plot"}};
     if (program == "airdos-calibration") return {{}, {"show"}, {"convert"}, {"check"}};
     if (program == "airdos-evaluate")
-      return {{}, {"trajectory"}, {"people"}, {"curve"}, {"speed"}, {"ablation"}};
+      return {{}, {"trajectory"}, {"people"}, {"detections"}, {"curve"}, {"speed"}, {"ablation"}};
     return {{}};
   }
   Answer Run(const std::string& program, std::vector<std::string> arguments) const {

@@ -138,7 +138,7 @@ each_command_is_completed() {
   completes airdos-frontend --pace = r gives realtime
   completes airdos-run-live --pace '' gives lockstep realtime
   completes airdos-replay --people m gives mask_only
-  completes airdos-evaluate '' gives trajectory people curve speed ablation
+  completes airdos-evaluate '' gives trajectory people detections curve speed ablation
   completes airdos-evaluate trajectory --pl gives --plot
   completes airdos-calibration '' gives show convert check
   completes airdos-calibration convert --to k gives kalibr
