@@ -1,6 +1,7 @@
 #include "processes/stereo_camera/camera_messages.h"
 
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "airdos/image_t.hpp"
@@ -16,17 +17,33 @@ namespace {
 
 constexpr std::int64_t kCalibrationPeriod_us = 1000000;
 constexpr std::int64_t kTryBetterEvery = 30;  // pairs
+constexpr char kHowToExamine[] =
+    "the calibration does not fit the camera, look at it with airdos-calibration check FILE "
+    "--images LEFT RIGHT";
+
+cv::Mat Grey(const cv::Mat& image) {
+  if (image.channels() == 1) return image;
+  cv::Mat grey;
+  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
+  return grey;
+}
 
 }  // namespace
 
 CameraMessages::CameraMessages(const StereoRectifier* rectifier,
                                const CameraMessageOptions& options)
-    : rectifier_(rectifier), options_(options) {
+    : rectifier_(rectifier), rows_(kHowToExamine), options_(options) {
   AIRDOS_CHECK(!options.jpeg_qualities.empty());
   next_.session = options.session;
 }
 
 std::vector<std::string> CameraMessages::TakeNotes() { return std::exchange(notes_, {}); }
+
+void CameraMessages::WatchRows(const cv::Mat& left, const cv::Mat& right) {
+  if (!rows_.IsDue()) return;
+  rows_.Add(Grey(left), Grey(right));
+  for (const std::string& warning : rows_.TakeWarnings()) notes_.push_back("warning: " + warning);
+}
 
 std::optional<std::vector<std::uint8_t>> CameraMessages::AsJpeg(const cv::Mat& image) {
   std::vector<std::uint8_t> bytes;
@@ -99,6 +116,7 @@ std::vector<Envelope> CameraMessages::Pack(const CapturedPair& pair) {
   if (quality_ > 0 && num_packed_ % kTryBetterEvery == 0) --quality_;
   const cv::Mat left = rectifier_->Left(pair.left);
   const cv::Mat right = rectifier_->Right(pair.right);
+  WatchRows(left, right);
   std::optional<std::vector<std::uint8_t>> left_bytes = Encoded(left);
   if (!left_bytes) return {};
   std::optional<std::vector<std::uint8_t>> right_bytes = Encoded(right);

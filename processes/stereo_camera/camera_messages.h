@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/calibration/stereo_rectifier.h"
+#include "common/check/row_watch.h"
 #include "processes/node/message/header.h"
 #include "processes/node/node.h"
 #include "processes/stereo_camera/frame_grabber.h"
@@ -40,9 +41,11 @@ class CameraMessages {
   /// Of the pair packed last.
   const std::optional<Header>& newest() const { return newest_; }
   std::int64_t num_packed() const { return num_packed_; }
+  /// For the user; also what RowWatch warns of, as nobody checks a camera before it runs.
   std::vector<std::string> TakeNotes();
 
  private:
+  void WatchRows(const cv::Mat& left, const cv::Mat& right);
   std::optional<std::vector<std::uint8_t>> Encoded(const cv::Mat& image);
   std::optional<std::vector<std::uint8_t>> AsJpeg(const cv::Mat& image);
   void AddImage(const char* channel, const cv::Mat& image, std::vector<std::uint8_t> bytes,
@@ -51,6 +54,7 @@ class CameraMessages {
   void AddNobody(std::vector<Envelope>* messages) const;
 
   const StereoRectifier* rectifier_;
+  RowWatch rows_;  // of the rectified images
   CameraMessageOptions options_;
   Header next_;
   std::optional<Header> newest_;

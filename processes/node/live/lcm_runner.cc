@@ -12,6 +12,7 @@
 #include "common/util/version.h"
 #include "processes/node/log/log_source.h"
 #include "processes/node/message/channels.h"
+#include "processes/node/message/figures.h"
 #include "processes/node/message/header.h"
 #include "processes/node/message/types_fingerprint.h"
 
@@ -351,6 +352,10 @@ void LcmRunner::SayCounters() {
           << " ms";
   log_->Info(latency.str());
   for (const auto& [channel, counters] : node_->channels()) {
+    if (channel == figure::kRowError_millipx) {
+      log_->Info(channel + ": " + std::to_string(counters.num_received));
+      continue;
+    }
     log_->Info(channel + ": received " + std::to_string(counters.num_received) + ", missing " +
                std::to_string(counters.num_missing) + ", duplicate " +
                std::to_string(counters.num_duplicate) + ", rejected " +

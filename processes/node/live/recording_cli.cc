@@ -113,6 +113,15 @@ std::unique_ptr<RectifiedSequence> RecordingArguments::Open() const {
 
 std::string RecordingArguments::name() const { return images_.empty() ? video_[0] : images_[0]; }
 
+std::string RecordingArguments::HowToExamine() const {
+  const std::string images =
+      images_.size() == 2 ? images_[0] + " " + images_[1] : std::string("LEFT RIGHT");
+  std::string files;
+  for (const std::string& path : calibration_.paths()) files += path + " ";
+  return "the calibration does not fit them, look at it with airdos-calibration check " + files +
+         "--images " + images;
+}
+
 std::vector<std::string> RecordingArguments::paths() const {
   std::vector<std::string> all = images_.empty() ? video_ : images_;
   all.insert(all.end(), calibration_.paths().begin(), calibration_.paths().end());

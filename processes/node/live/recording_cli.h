@@ -30,7 +30,9 @@ class RecordingArguments {
   const std::string& named_calibration() const { return named_calibration_; }
   /// Of a recording; throws InputError.
   std::unique_ptr<RectifiedSequence> Open() const;
-  std::string name() const;                ///< for messages
+  std::string name() const;  ///< for messages
+  /// What to do where the images are not rectified after all: RowWatch's `mend`.
+  std::string HowToExamine() const;
   std::vector<std::string> paths() const;  ///< all that is read
 
  private:

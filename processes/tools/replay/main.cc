@@ -3,6 +3,7 @@
 #include <limits>
 #include <memory>
 #include <opencv2/core/utility.hpp>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "common/util/error.h"
 #include "processes/node/check/input_check.h"
+#include "processes/node/check/watched_source.h"
 #include "processes/node/live/process_cli.h"
 #include "processes/node/live/recording_cli.h"
 #include "processes/node/log/looped_source.h"
@@ -96,7 +98,11 @@ int main(int argc, char** argv) {
       return std::unique_ptr<airdos::FrameSource>(std::make_unique<airdos::PartialSource>(
           std::move(whole), airdos::ChannelsOfPeople("--detect", {"keypoints", "masks"})));
     };
-    airdos::LoopedSource source(open, num_loops);
+    airdos::RowWatch rows(recording.is_given() ? recording.HowToExamine()
+                                               : airdos::HowToRectify("airdos-replay"));
+    const std::string name = recording.is_given() ? recording.name() : input.path();
+    airdos::WatchedSource source(std::make_unique<airdos::LoopedSource>(open, num_loops), name,
+                                 &rows);
     // Reported only once everything else is known to be right.
     std::vector<std::string> remarks;
     for (const std::string& note : source.TakeNotes()) remarks.push_back("note: " + note);
@@ -117,11 +123,19 @@ int main(int argc, char** argv) {
     options.is_parallel = threads == "auto" && std::thread::hardware_concurrency() > 1;
     airdos::ProgressBar bar;
     if (!no_progress) options.on_progress = [&bar](double fraction) { bar.Show(fraction); };
+    std::set<std::string> said;
+    options.on_remark = [&](const std::string& remark) {
+      bar.MakeRoom();
+      say((remark.find("warning: ") == std::string::npos ? "note: " : "") + remark);
+      said.insert(remark);
+    };
     const airdos::ReplayResult result = airdos::Replay(&source, replay.nodes, options);
     if (!timing_path.empty()) airdos::WriteTiming(result, timing_path);
     std::cout << (digest ? airdos::FormatDigests(result.digests) : airdos::FormatSummary(result));
     if (digest) {  // which must not hide that something was rejected
-      for (const std::string& remark : result.remarks) std::cerr << "note: " << remark << "\n";
+      for (const std::string& remark : result.remarks) {
+        if (said.count(remark) == 0) std::cerr << "note: " << remark << "\n";
+      }
     }
     const std::string why_in_vain = airdos::WhyInVain(result.tally);
     if (!why_in_vain.empty()) say(why_in_vain);
