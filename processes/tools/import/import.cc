@@ -35,7 +35,7 @@ class PartFile {
   void Finish() {
     std::error_code error;
     fs::rename(part_, path_, error);
-    if (error) throw InputError(path_ + ": cannot be written: " + error.message());
+    if (error) throw WriteError(path_ + ": cannot be written: " + error.message());
     is_whole_ = true;
   }
 

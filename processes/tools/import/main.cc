@@ -131,7 +131,10 @@ int Import(InputOptions input, Arguments arguments) {
   cv::setNumThreads(1);
   Check(arguments, path);
   ProgressBar bar;
-  options.on_note = [](const std::string& note) { Say("note: " + note); };
+  options.on_note = [&bar](const std::string& note) {
+    bar.MakeRoom();
+    Say("note: " + note);
+  };
   if (!arguments.no_progress) options.on_progress = [&bar](double done) { bar.Show(done); };
   std::unique_ptr<StereoSequence> sequence =
       WithKeypoints(OpenSequence(arguments, path), arguments);
