@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/evaluation/people_matching.h"
+#include "common/evaluation/seen_person.h"
 #include "common/human/person_pairing.h"
 #include "common/util/format.h"
 #include "common/util/quantile.h"
@@ -13,7 +14,6 @@
 namespace airdos {
 namespace {
 
-constexpr double kMinJointDepthM = 0.2;
 constexpr double kLimbQuantile = 0.75;
 // Sides count as exchanged if exchanging them halves the distance: of a person seen from the side,
 // both are in the same place.
@@ -59,43 +59,6 @@ std::vector<Joints> ToJoints(const People& people, const StereoCamera& camera) {
   return all_C;
 }
 
-/// A true person as one image shows them.
-struct SeenPerson {
-  Joints joints_C;        ///< of that image's camera
-  std::set<int> visible;  ///< joints that the image shows
-  bool is_to_be_seen = false;
-  std::size_t band = 0;
-  Sight sight = Sight::kWhole;
-};
-using SeenPeople = std::map<std::int64_t, SeenPerson>;
-
-SeenPerson See(const TruePersonState& person, const TrajectoryPose& T_W_C,
-               const StereoCamera& camera, ImageSide side) {
-  const bool is_left = side == kLeftImage;
-  const std::optional<int>& num_told = is_left ? person.num_visible_left : person.num_visible_right;
-  const std::set<int>& told = is_left ? person.visible_left : person.visible_right;
-  SeenPerson seen;
-  int num_inside = 0;
-  for (auto [joint, p_C] : InCamera(person.joints, T_W_C)) {
-    if (!is_left) p_C.x() -= camera.baseline_m;
-    seen.joints_C[joint] = p_C;
-    if (p_C.z() < kMinJointDepthM || !camera.IsInImage(camera.Project(p_C))) continue;
-    ++num_inside;
-    if (!num_told || told.count(joint) > 0) seen.visible.insert(joint);
-  }
-  const auto num_visible = static_cast<int>(seen.visible.size());
-  const double depth_m = MiddleDepth(seen.joints_C);
-  seen.band = DepthBand(depth_m);
-  seen.is_to_be_seen = depth_m >= kMinPersonDepthM && depth_m <= kMaxPersonDepthM &&
-                       num_told.value_or(num_visible) >= kMinVisibleJoints;
-  if (num_inside < static_cast<int>(seen.joints_C.size())) {
-    seen.sight = Sight::kCutOff;
-  } else if (2 * num_visible < num_inside) {
-    seen.sight = Sight::kHidden;
-  }
-  return seen;
-}
-
 /// Lists of errors, of everybody and by depth.
 class Errors {
  public:
@@ -127,6 +90,12 @@ bool AreSidesExchanged(const Joints& detected_C, const Joints& truth_C) {
          kClearlyBetter * ImageDistance(detected_C, truth_C, SideSwap::kNone);
 }
 
+bool Fits(const Joints& detected_C, const Joints& truth_C) {
+  return MiddleDepth(truth_C) >= kMinPersonDepthM &&
+         std::min(ImageDistance(detected_C, truth_C, SideSwap::kNone),
+                  ImageDistance(detected_C, truth_C, SideSwap::kAll)) < kMaxImageDistance;
+}
+
 /// Compares a detector with the truth in one image after the other, of one side.
 class ImageEvaluator {
  public:
@@ -140,8 +109,8 @@ class ImageEvaluator {
   }
 
  private:
-  void AddRest(const std::vector<Joints>& rest_C, const SeenPeople& truth,
-               const std::map<std::int64_t, Joints>& others_C);
+  void AddRest(const People& rest, const SeenPeople& truth,
+               const std::map<std::int64_t, Joints>& others_C, const StereoCamera& camera);
   void AddJoints(const BodyKeypoints& person, const SeenPerson& seen, const StereoCamera& camera);
 
   ImageScore score_;
@@ -173,28 +142,35 @@ Matches ImageEvaluator::AddImage(const People& people, const SeenPeople& truth,
     Count(is_found, &score_.recall_by_depth[seen.band]);
     Count(is_found, &score_.recall_by_sight[static_cast<std::size_t>(seen.sight)]);
   }
-  std::vector<Joints> rest_C;
+  People rest;
   for (std::size_t i = 0; i < people.size(); ++i) {
-    if (!is_matched[i]) rest_C.push_back(detected_C[i]);
+    if (!is_matched[i]) rest.push_back(people[i]);
   }
-  AddRest(rest_C, truth, others_C);
+  AddRest(rest, truth, others_C, camera);
   return found;
 }
 
-void ImageEvaluator::AddRest(const std::vector<Joints>& rest_C, const SeenPeople& truth,
-                             const std::map<std::int64_t, Joints>& others_C) {
+void ImageEvaluator::AddRest(const People& rest, const SeenPeople& truth,
+                             const std::map<std::int64_t, Joints>& others_C,
+                             const StereoCamera& camera) {
+  const std::vector<Joints> rest_C = ToJoints(rest, camera);
   const std::map<std::size_t, std::int64_t> on_others = MatchPeople(rest_C, others_C);
   score_.num_on_others += on_others.size();
   for (std::size_t i = 0; i < rest_C.size(); ++i) {
     if (on_others.count(i) > 0) continue;
     ++score_.num_false;
-    const bool is_double = std::any_of(truth.begin(), truth.end(), [&](const auto& entry) {
-      const Joints& truth_C = entry.second.joints_C;
-      return MiddleDepth(truth_C) >= kMinPersonDepthM &&
-             std::min(ImageDistance(rest_C[i], truth_C, SideSwap::kNone),
-                      ImageDistance(rest_C[i], truth_C, SideSwap::kAll)) < kMaxImageDistance;
-    });
-    score_.num_doubles += is_double ? 1 : 0;
+    const auto is_any = [&](const auto& is_this_one) {
+      return std::any_of(truth.begin(), truth.end(),
+                         [&](const auto& entry) { return is_this_one(entry.second); });
+    };
+    const double height_px = StandingHeight(rest[i], MinConfidence()).value_or(0);
+    if (is_any([&](const SeenPerson& person) { return Fits(rest_C[i], person.joints_C); })) {
+      ++score_.num_doubles;
+    } else if (is_any([&](const SeenPerson& person) {
+                 return !person.visible.empty() && IsOn(rest_C[i], height_px, person, camera);
+               })) {
+      ++score_.num_astray;
+    }
   }
 }
 

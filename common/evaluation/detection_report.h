@@ -71,10 +71,13 @@ struct ImageScore {
   std::size_t num_on_others = 0;  ///< on people who are not to be seen: neither right nor wrong
   std::size_t num_false = 0;      ///< on nobody, or on a person who has a detection already
   std::size_t num_doubles = 0;    ///< of these, the latter
+  std::size_t num_astray = 0;     ///< of these, on somebody, but with joints elsewhere (see IsOn())
   std::size_t num_exchanged = 0;  ///< found people with their left and right sides exchanged
   ErrorSpread joint_px;           ///< distance in the image
   std::array<ErrorSpread, kNumDepthBands> joint_px_by_depth;
 
+  /// Of the false ones, those on nobody at all.
+  std::size_t num_on_nobody() const { return num_false - num_doubles - num_astray; }
   double false_per_image() const;
 };
 

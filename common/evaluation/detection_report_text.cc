@@ -35,11 +35,14 @@ std::string ImageTable(const std::string& title, const ImageScore& s) {
     text += RecallCells(kSightNames[i], s.recall_by_sight[i]) + "\n";
   }
   text += Format(
-      "  %zu detections in %zu images: %zu false, %.2f an image (%zu of them second ones of a "
-      "person);\n  %zu on people not to be seen; %zu with too few joints not counted; sides "
-      "exchanged: %zu\n\n",
-      s.num_detections, s.num_images, s.num_false, s.false_per_image(), s.num_doubles,
-      s.num_on_others, s.num_unusable, s.num_exchanged);
+      "  %zu detections in %zu images, %zu of them on people not to be seen; %zu of too few "
+      "joints\n",
+      s.num_detections, s.num_images, s.num_on_others, s.num_unusable);
+  text += Format(
+      "  false: %.2f an image, %zu in all: %zu second ones of a person, %zu on a person but with "
+      "joints\n  elsewhere, %zu on nobody; sides exchanged: %zu\n\n",
+      s.false_per_image(), s.num_false, s.num_doubles, s.num_astray, s.num_on_nobody(),
+      s.num_exchanged);
   return text;
 }
 
@@ -115,6 +118,8 @@ json ToJson(const ImageScore& s) {
           {"false", s.num_false},
           {"false_per_image", s.false_per_image()},
           {"false_as_second_of_a_person", s.num_doubles},
+          {"false_on_a_person_with_joints_elsewhere", s.num_astray},
+          {"false_on_nobody", s.num_on_nobody()},
           {"sides_exchanged", s.num_exchanged},
           {"joint_error_px", ToJson(s.joint_px)},
           {"joint_error_px_by_depth", ToJson(s.joint_px_by_depth, kDepthBandNames)}};

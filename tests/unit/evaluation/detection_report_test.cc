@@ -216,6 +216,46 @@ TEST(DetectionReportTest, FalseOnesAreOnNobodyOrOnSomebodyWhoIsFoundAlready) {
   EXPECT_NEAR(report.detected->images[kLeftImage].false_per_image(), 0.5, 1e-9);
 }
 
+TEST(DetectionReportTest, FalseOnesOnSomebodyHaveTheirJointsElsewhere) {
+  // The body is 0.5 m wide and 1.5 m tall, and its box 0.17 m larger on each side.
+  const auto score_of = [](const BodyKeypoints& found) {
+    return ScoreLeft({Person(kNear)}, {found});
+  };
+  BodyKeypoints upside_down = Found(kNear);
+  for (BodyKeypoint& joint : upside_down) joint.v_px = 400 + 110 - (joint.v_px - 400);
+  EXPECT_EQ(score_of(upside_down).num_false, 1u);
+  EXPECT_EQ(score_of(upside_down).num_doubles, 0u);
+  EXPECT_EQ(score_of(upside_down).num_astray, 1u);
+  EXPECT_EQ(score_of(upside_down).num_on_nobody(), 0u);
+  EXPECT_EQ(ScoreLeft({Person(kNear, 0)}, {upside_down}).num_astray, 0u);  // behind something
+  // The box ends 0.42 m beside the middle. It holds eight joints of somebody 0.4 m to the right,
+  // nose, neck and those of the right side, and six of somebody at 0.45 m.
+  EXPECT_EQ(score_of(Found({0.4, 0, 5})).num_astray, 1u);
+  EXPECT_EQ(score_of(Found({0.45, 0, 5})).num_astray, 0u);
+  EXPECT_EQ(score_of(Found({0.45, 0, 5})).num_on_nobody(), 1u);
+  // In the right place, but of another size.
+  const auto scaled = [](double factor) {
+    BodyKeypoints person = Found(kNear);
+    for (BodyKeypoint& joint : person) {
+      joint.u_px = 500 + factor * (joint.u_px - 500);
+      joint.v_px = 455 - factor * (joint.v_px - 455);  // and upside down
+    }
+    return person;
+  };
+  EXPECT_EQ(score_of(scaled(0.52)).num_astray, 1u);
+  EXPECT_EQ(score_of(scaled(0.46)).num_astray, 0u);
+  // Hips and knees stay in the box; the thighs are 0.93 of typical ones.
+  const auto thighs = [&](double factor) {
+    BodyKeypoints person = scaled(factor);
+    for (const int joint : {0, 1, 2, 3, 4, 5, 6, 7, 10, 13}) {
+      person[static_cast<std::size_t>(joint)].confidence = 0;
+    }
+    return person;
+  };
+  EXPECT_EQ(score_of(thighs(2.1)).num_astray, 1u);
+  EXPECT_EQ(score_of(thighs(2.2)).num_astray, 0u);
+}
+
 TEST(DetectionReportTest, TwoPeopleCloseTogetherGetOneDetectionEach) {
   // The detection in the middle is nearer to the left person, but the other one fits only them.
   const std::vector<TruePersonState> truth = {Person(kNear), Person({0.3, 0, 5})};
@@ -398,7 +438,7 @@ TEST(DetectionReportTest, TextAndJson) {
       << text;
   EXPECT_NE(text.find("  6 to 12 m                       1        0     0.0 %        0         -"),
             std::string::npos);
-  EXPECT_NE(text.find("1 false, 1.00 an image"), std::string::npos);
+  EXPECT_NE(text.find("false: 1.00 an image, 1 in all: 0 second ones"), std::string::npos);
   EXPECT_NE(text.find("detected people, against the given ones"), std::string::npos);
   EXPECT_EQ(text.find("\n\n\n"), std::string::npos);
   EXPECT_EQ(text.back(), '\n');
