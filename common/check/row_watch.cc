@@ -55,8 +55,11 @@ void RowWatch::Add(const cv::Mat& left, const cv::Mat& right) {
     pool_ = {};
     Judge(*error);
   }
-  JudgeSilence();
+  JudgeSilence(kPatience);
 }
+
+// Of fewer pairs than the first ones hardly a trajectory comes.
+void RowWatch::Finish() { JudgeSilence(kFirstPairs); }
 
 void RowWatch::Judge(const RowError& error) {
   measurements_.push_back(error);
@@ -79,8 +82,8 @@ void RowWatch::Judge(const RowError& error) {
                       " px (median); " + mend_);
 }
 
-void RowWatch::JudgeSilence() {
-  if (is_silence_said_ || num_pairs_ < kPatience || measurements_.size() == kMeasurements) return;
+void RowWatch::JudgeSilence(int patience) {
+  if (is_silence_said_ || num_pairs_ < patience || measurements_.size() == kMeasurements) return;
   is_silence_said_ = true;
   warnings_.push_back(
       "hardly anything in the left images is found in the right ones, so whether "

@@ -14,7 +14,7 @@ namespace airdos {
 /// row in both, to the left in the right one. Looks at every second of the first ten pairs, at
 /// every tenth until three measurements are there, then at every hundredth, for a camera that is
 /// moved. A measurement has at least 20 matches, of several pairs if need be. Each problem is
-/// reported once, and also that after 30 pairs there were too few matches to know.
+/// reported once, and also that after 30 pairs, or at the end, there were too few matches to know.
 class RowWatch {
  public:
   /// `mend`: what to do about images that are not rectified; ends with the command.
@@ -26,6 +26,9 @@ class RowWatch {
   /// Both images CV_8UC1 and of equal size.
   void Add(const cv::Mat& left, const cv::Mat& right);
 
+  /// Call this where no more pairs will come, if that is ever known.
+  void Finish();
+
   /// Median row error of matches, px: the middle one of the last three measurements.
   std::optional<double> error_px() const;
   /// Warnings since the last call.
@@ -33,7 +36,7 @@ class RowWatch {
 
  private:
   void Judge(const RowError& error);
-  void JudgeSilence();
+  void JudgeSilence(int patience);
 
   std::string mend_;
   int num_pairs_ = 0;

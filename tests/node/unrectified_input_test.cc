@@ -117,6 +117,18 @@ TEST(UnrectifiedInputTest, WhateverPlaysThemSaysSoAndChangesNothing) {
   while (!again.NextFrame().empty()) EXPECT_FALSE(Says(again.TakeNotes(), "warning: "));
 }
 
+TEST(UnrectifiedInputTest, AtTheEndItIsSaidThatNothingIsKnown) {
+  RowWatch rows("do this");
+  constexpr int kAlmostAll = 191;  // nothing is left to be matched
+  WatchedSource source(std::make_unique<WalkSource>(kAlmostAll), "walk.lcm", &rows);
+  std::vector<std::string> notes;
+  for (bool is_end = false; !is_end;) {
+    is_end = source.NextFrame().empty();
+    notes = source.TakeNotes();
+  }
+  EXPECT_TRUE(Says(notes, "warning: walk.lcm: hardly anything"));
+}
+
 /// Hands out one frame again and again.
 class OneFrameSource : public FrameSource {
  public:

@@ -47,6 +47,7 @@ WatchedSource::WatchedSource(std::unique_ptr<FrameSource> source, std::string na
 
 std::vector<Envelope> WatchedSource::NextFrame() {
   std::vector<Envelope> frame = source_->NextFrame();
+  if (frame.empty()) rows_->Finish();
   const Envelope* left = LastOf(frame, channel::kCameraLeft);
   const Envelope* right = LastOf(frame, channel::kCameraRight);
   if (!IsPair(HeaderOf(left), HeaderOf(right)) || !rows_->IsDue()) return frame;

@@ -93,6 +93,18 @@ TEST(RowWatchTest, MatchesThatComeLateCountAtOnce) {
       << "at the 50th, 60th and 70th pair";
 }
 
+TEST(RowWatchTest, ShortInputsTooSayThatItIsNotKnown) {
+  const cv::Mat grey(kSize, CV_8UC1, cv::Scalar(90));
+  RowWatch known(kMend), unknown(kMend), hardly_any(kMend);
+  Show(10, Texture(), Right(0), &known);
+  Show(10, grey, grey, &unknown);
+  Show(9, grey, grey, &hardly_any);
+  for (RowWatch* watch : {&known, &unknown, &hardly_any}) watch->Finish();
+  EXPECT_TRUE(known.TakeWarnings().empty());
+  EXPECT_EQ(unknown.TakeWarnings().size(), 1u);
+  EXPECT_TRUE(hardly_any.TakeWarnings().empty());
+}
+
 TEST(RowWatchTest, AMismatchNowAndThenDoesNotAddUp) {
   const cv::Mat left = PatchOf(Texture(), 24);
   const cv::Mat right = PatchOf(Right(4), 24);
