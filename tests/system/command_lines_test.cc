@@ -221,6 +221,11 @@ TEST_F(CommandLineTest, MistypedCommandsAndChoicesAreAnswered) {
     EXPECT_EQ(answer.exit_code, 2);
     EXPECT_NE(answer.errors.find("INPUT is missing"), std::string::npos) << answer.errors;
   }
+  // Who reads no log does not offer to.
+  EXPECT_EQ(Run("airdos-import", {"--out", "x"}).errors,
+            "airdos-import: INPUT is missing: the folder of a data set (--data), or a recording "
+            "(--images, --video)\n");
+  EXPECT_EQ(Run("airdos-import", {"--help"}).output.find("LCM log"), std::string::npos);
 }
 
 TEST_F(CommandLineTest, SetMayNameTheProcessItIsMeantFor) {

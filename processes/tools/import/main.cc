@@ -155,7 +155,7 @@ int main(int argc, char** argv) {
       "Makes a log, or a data set folder, of a recording or data set: rectified, with the people "
       "that another program found.",
       "airdos-import");
-  airdos::InputOptions input(&app);
+  airdos::InputOptions input(&app, airdos::InputOptions::Takes::kDatasets);
   airdos::Arguments arguments;
   airdos::AddTo(&app, &arguments);
   return airdos::RunProgram(argc, argv, &app, [&] { return airdos::Import(input, arguments); });
