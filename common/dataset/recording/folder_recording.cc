@@ -104,10 +104,6 @@ std::string PathOf(const ImageNames& names, std::size_t index) {
   return (fs::path(names.folder) / names.files[index]).string();
 }
 
-std::string SizeText(const std::pair<int, int>& size) {
-  return std::to_string(size.first) + "x" + std::to_string(size.second) + " px";
-}
-
 using Sizes = std::map<std::pair<int, int>, std::size_t>;
 
 std::pair<int, int> Commonest(const Sizes& sizes) {

@@ -23,12 +23,10 @@ RectifiedSequence::RectifiedSequence(std::unique_ptr<StereoRecording> recording,
       rig_(rig),
       rectifier_(rig, options),
       notes_(recording_->TakeNotes()) {
-  const auto [width, height] = recording_->image_size();
-  if (width != camera().width || height != camera().height) {
-    throw InputError(recording_->name() + ": has images of " + std::to_string(width) + "x" +
-                     std::to_string(height) + " px, the calibration is for " +
-                     std::to_string(camera().width) + "x" + std::to_string(camera().height) +
-                     " px");
+  const std::pair<int, int> calibrated = {camera().width, camera().height};
+  if (recording_->image_size() != calibrated) {
+    throw InputError(recording_->name() + ": has images of " + SizeText(recording_->image_size()) +
+                     ", the calibration is for " + SizeText(calibrated));
   }
   const std::string file = rig.files.empty() ? "calibration" : rig.files[0];
   for (const auto* lines : {&rig.notes, &rectifier_.notes()}) {

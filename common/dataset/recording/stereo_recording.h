@@ -25,6 +25,11 @@ struct PairNames {
   std::string right;
 };
 
+/// "640x360 px", for messages.
+inline std::string SizeText(const std::pair<int, int>& size) {
+  return std::to_string(size.first) + "x" + std::to_string(size.second) + " px";
+}
+
 /// The images of a stereo camera as people have them: in folders, in videos. What is known of them
 /// to be useless when the recording is opened is left out of it; what turns out to be when an image
 /// is decoded is skipped. Both are said in notes.

@@ -15,10 +15,6 @@
 namespace airdos {
 namespace {
 
-std::string SizeText(const std::pair<int, int>& size) {
-  return std::to_string(size.first) + "x" + std::to_string(size.second) + " px";
-}
-
 /// What FFmpeg would print of a damaged video, our notes say in a line. OpenCV asks the environment
 /// when it opens the first one; whoever has set the variable sees all.
 void SilenceFfmpeg() {
