@@ -362,8 +362,9 @@ TEST(DetectionReportTest, AnImageOfWhichNothingIsKnownDoesNotCount) {
 
 TEST(DetectionReportTest, AgainstGivenPeopleWithoutATruth) {
   DetectionFrame frame;
-  frame.detected = {People{Found(kNear, kLeftImage, {5, 0}), Found(kFar), Found({3, 0, 6})},
-                    People{}};
+  frame.detected = {
+      People{Found(kNear, kLeftImage, {5, 0}), Found(kFar), Found({3, 0, 6}), Found({-3, 0, 6})},
+      People{}};
   frame.given = {People{Found(kFar), Found(kNear), Found(kMiddle)},
                  People{Found(kNear, kRightImage)}};
   const DetectionReport report = EvaluateDetections(kCamera, {frame, frame});
@@ -375,9 +376,9 @@ TEST(DetectionReportTest, AgainstGivenPeopleWithoutATruth) {
   EXPECT_EQ(left.recall.num_found, 4u);
   EXPECT_EQ(left.recall_by_depth[1].num_people, 2u);
   EXPECT_EQ(left.recall_by_depth[1].num_found, 0u);
-  EXPECT_EQ(left.num_detections, 6u);
-  EXPECT_EQ(left.num_without_partner, 2u);
-  EXPECT_NEAR(left.without_partner_per_image(), 1, 1e-9);
+  EXPECT_EQ(left.num_detections, 8u);
+  EXPECT_EQ(left.num_without_partner, 4u);
+  EXPECT_NEAR(left.without_partner_per_image(), 2, 1e-9);
   EXPECT_EQ(report.agreement.value()[kRightImage].recall.num_people, 2u);
   EXPECT_EQ(report.agreement.value()[kRightImage].recall.num_found, 0u);
 }
