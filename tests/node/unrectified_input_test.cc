@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "airdos/process_status_t.hpp"
 #include "processes/node/check/watched_source.h"
+#include "processes/node/live/lcm_runner.h"
 #include "processes/node/message/figures.h"
 #include "processes/stereo_camera/camera_messages.h"
 #include "processes/tools/replay/replay.h"
@@ -93,6 +96,47 @@ TEST(UnrectifiedInputTest, TheFrontendCountsTheRowErrorAndSaysTheCommand) {
   EXPECT_NE(warnings[0].find("airdos-stereo-player --images LEFT RIGHT --calibration FILE"),
             std::string::npos)
       << warnings[0];
+}
+
+/// As memq:// delivers only when it is asked to, all messages are there when the first is worked
+/// on.
+TEST(UnrectifiedInputTest, TheFrontendProcessSaysItOnStderrAndInStatus) {
+  InstallStopSignals();
+  LcmTransport transport("memq://");
+  int num_done = 0;
+  transport.Subscribe(channel::kFrameDone, [&](const void*, std::size_t, std::int64_t) {
+    if (++num_done == kNumFrames) std::raise(SIGTERM);
+  });
+  FrontendNode node(Alone());
+  LcmRunnerOptions options;
+  options.process = "airdos-frontend";
+  options.publishes_frame_done = true;
+  const ProcessLog log("airdos-frontend", LogLevel::kInfo);
+  testing::internal::CaptureStderr();
+  LcmRunner runner(&node, &transport, options, &log);
+  runner.Start();
+  WalkSource source(4);
+  for (auto frame = source.NextFrame(); !frame.empty(); frame = source.NextFrame()) {
+    for (const Envelope& message : frame)
+      transport.Publish(message.channel, message.payload.data(), message.payload.size());
+  }
+  runner.Run();
+  process_status_t last = {};  // which it says before it stops
+  transport.Subscribe(channel::kStatus, [&](const void* data, std::size_t size, std::int64_t) {
+    ASSERT_TRUE(Decode(data, size, &last));
+  });
+  while (transport.Poll(0)) {
+  }
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find(std::string("airdos-frontend: warning: ") + kNotRectified), said.npos)
+      << said;
+  EXPECT_NE(said.find("info: row_error_millipx: "), said.npos) << said;
+  const auto figure = std::find_if(
+      last.channels.begin(), last.channels.end(),
+      [](const channel_status_t& entry) { return entry.channel == "row_error_millipx"; });
+  ASSERT_NE(figure, last.channels.end());
+  EXPECT_NEAR(static_cast<double>(figure->num_received), 4000, 100);
+  EXPECT_TRUE(Says(last.warnings, kNotRectified));
 }
 
 TEST(UnrectifiedInputTest, WhateverPlaysThemSaysSoAndChangesNothing) {
