@@ -18,17 +18,13 @@ double ScaleInto(const cv::Size& image, const cv::Size& size) {
 
 }  // namespace
 
-cv::Size ChooseInputSize(const cv::Size& image, int max_pixels, int step_px) {
-  cv::Size best(step_px, step_px);
-  for (int height = step_px; height <= max_pixels / step_px; height += step_px) {
-    for (int width = step_px; width * height <= max_pixels; width += step_px) {
-      const cv::Size size(width, height);
-      const double gain =
-          std::min(1.0, ScaleInto(image, size)) / std::min(1.0, ScaleInto(image, best));
-      if (gain > 1 + kHardly || (gain > 1 - kHardly && size.area() < best.area())) best = size;
-    }
-  }
-  return best;
+cv::Size ChooseInputSize(const cv::Size& image, int short_side_px, int step_px) {
+  const double scale =
+      std::min(1.0, static_cast<double>(short_side_px) / std::min(image.width, image.height));
+  const auto side = [&](int length) {
+    return step_px * std::max(1, cvCeil((1 - kHardly) * scale * length / step_px));
+  };
+  return {side(image.width), side(image.height)};
 }
 
 cv::Mat FitIntoInput(const cv::Mat& bgr, const cv::Size& size, Fill fill, InputPlace* place) {

@@ -36,10 +36,10 @@ struct InputPlace {
   }
 };
 
-/// The size that shows the image largest, not larger than it is, among those whose sides are
-/// multiples of `step_px` and that have at most `max_pixels`; of sizes that hardly differ in this
-/// the smallest. At least one step.
-cv::Size ChooseInputSize(const cv::Size& image, int max_pixels, int step_px);
+/// The size of an input that shows the image with a shorter side of `short_side_px`, but not larger
+/// than it is; to a per cent, the smallest whose sides are multiples of `step_px`. By the shorter
+/// side and not by the area, since people are as high in a wide image as in another one.
+cv::Size ChooseInputSize(const cv::Size& image, int short_side_px, int step_px);
 
 /// Where the rest of the input is that the image, whose shape is another one, does not fill.
 enum class Fill {

@@ -24,10 +24,11 @@ std::unique_ptr<PoseNetwork> MakeNetwork(const PersonDetectorOptions& options) {
   return std::make_unique<MoveNet>(options.pose);
 }
 
-constexpr std::size_t kMinFollowed = 3;  // joints, so that most of them outvote one that slipped
+constexpr std::size_t kMinFollowed = 2;  // joints; one alone may have slipped
+constexpr double kCarried = 0.9;         // confidence of a joint that goes along with the others
 
 /// Moves each joint to its place in the next image; one that was lost moves as the others do in the
-/// median, with half its score. If most are lost, so is the person.
+/// median, with a little less confidence. If most are lost, so is the person.
 void Carry(const std::vector<std::optional<Eigen::Vector2d>>& places, PersonPose* person) {
   std::vector<double> du_px, dv_px;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -45,7 +46,7 @@ void Carry(const std::vector<std::optional<Eigen::Vector2d>>& places, PersonPose
     BodyKeypoint& joint = person->joints[i];
     if (joint.confidence <= 0) continue;
     const Eigen::Vector2d place = places[i].value_or(joint.uv_px() + shift_px);
-    joint = {place.x(), place.y(), places[i] ? joint.confidence : joint.confidence / 2};
+    joint = {place.x(), place.y(), places[i] ? joint.confidence : kCarried * joint.confidence};
   }
 }
 

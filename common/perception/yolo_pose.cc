@@ -79,7 +79,7 @@ PersonPose ToPerson(const float* row, const Columns& columns, const InputPlace& 
 std::vector<PersonPose> YoloPose::Process(const cv::Mat& bgr) {
   cv::Size size(options_.input.width_px, options_.input.height_px);
   if (size.width <= 0 || size.height <= 0)
-    size = ChooseInputSize(bgr.size(), options_.max_input_pixels, kInputStep_px);
+    size = ChooseInputSize(bgr.size(), options_.short_side_px, kInputStep_px);
   InputPlace place;
   const cv::Mat input = FitIntoInput(bgr, size, Fill::kAround, &place);
   const std::vector<cv::Mat> outputs = net_.Process(ToBlob(options_.input, input));

@@ -58,9 +58,9 @@ void AddNetwork(const std::string& section, PoseNetworkOptions* options, OptionT
   table->Add(key("width_px"), &input->width_px, {0, 4096}, "px",
              "of the input; 0, and 0 as height: by the shape of the images");
   table->Add(key("height_px"), &input->height_px, {0, 4096}, "px", "of the input");
-  table->Add(key("max_pixels"), &options->max_input_pixels, {1024, 16777216}, "px",
-             "of an input that goes by the shape of the images: time grows with it, and so does "
-             "the number of small people that are found");
+  table->Add(key("short_side_px"), &options->short_side_px, {32, 4096}, "px",
+             "shorter side of an input that goes by the shape of the images: time grows with its "
+             "square, and so does the number of small people that are found");
   table->AddChoice<Layout>(key("layout"), &input->layout,
                            {{"channels_first", Layout::kChannelsFirst, "1 x 3 x rows x columns"},
                             {"channels_last", Layout::kChannelsLast, "1 x rows x columns x 3"}});

@@ -243,7 +243,6 @@ TEST(OptionsWiringTest, KeysSayTheirMembersNames) {
       {"joints.refine", "is_refined"},
       {"joints.min_score", "min_joint_score"},
       {"joints.min_number", "min_joints"},
-      {"max_pixels", "max_input_pixels"},
       {"people.rigidity", "use_rigidity"},
       {"people.motion", "use_motion"},
       {"people.huber_sigmas", "huber_dynamic_sigmas"}};

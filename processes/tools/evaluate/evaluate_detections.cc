@@ -48,7 +48,7 @@ void AddDetectionsCommand(CommandLine* app) {
       .AddFile(
           "--log", &arguments->log,
           "log with PERSON_KEYPOINTS_LEFT and _RIGHT, as written by airdos-replay --data FOLDER "
-          "--detect --out LOG --all, run_live.sh --record, or airdos-import")
+          "--detect --out LOG, run_live.sh --record, or airdos-import")
       .Required();
   command
       .AddFolder("--data", &arguments->data,

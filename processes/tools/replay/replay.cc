@@ -97,7 +97,10 @@ using FrameKey = std::pair<std::int64_t, std::int64_t>;  // (session, seq)
 // Keeps what the bus carries: log, digests, frame numbers.
 class Archive {
  public:
-  explicit Archive(const ReplayOptions& options) : writes_inputs_(options.writes_inputs) {
+  Archive(const std::vector<ReplayNode>& nodes, const ReplayOptions& options)
+      : writes_inputs_(options.writes_inputs) {
+    for (const ReplayNode& entry : nodes)
+      published_.insert(entry.publishes.begin(), entry.publishes.end());
     if (!options.out_path.empty()) writer_.emplace(options.out_path);
   }
 
@@ -105,12 +108,14 @@ class Archive {
     const void* data = message.payload.data();
     const std::size_t size = message.payload.size();
     const Header header = PeekHeader(data, size).value_or(Header{});
-    const bool is_input = IsInputChannel(message.channel);
+    // People come from the source or from a detector that runs here.
+    const bool is_published = published_.count(message.channel) > 0;
+    const bool is_input = IsInputChannel(message.channel) && !is_published;
     if (message.channel == channel::kCameraLeft || message.channel == channel::kCameraRight ||
         message.channel == channel::kStaticFeatures)
       frames_.insert({header.session, header.seq});
     tally_.Take(message.channel, data, size);
-    if (IsOutputChannel(message.channel)) digests_.Add(message.channel, data, size);
+    if (IsOutputChannel(message.channel) || is_published) digests_.Add(message.channel, data, size);
     if (writer_ && (writes_inputs_ || !is_input))
       writer_->Append(header.utime, message.channel, data, size);
   }
@@ -125,6 +130,7 @@ class Archive {
 
  private:
   bool writes_inputs_;
+  std::set<std::string> published_;
   std::optional<EventLogWriter> writer_;
   ChannelDigests digests_;
   std::set<FrameKey> frames_;
@@ -194,7 +200,7 @@ std::vector<Envelope> NextFrame(FrameSource* source, Bus* bus) {
 
 ReplayResult Replay(FrameSource* source, const std::vector<ReplayNode>& nodes,
                     const ReplayOptions& options) {
-  Archive archive(options);
+  Archive archive(nodes, options);
   Overseer overseer(nodes);
   const auto say = [&options](const std::vector<std::string>& remarks) {
     if (!options.on_remark) return;

@@ -20,11 +20,11 @@ using nlohmann::json;
 
 // --- the input
 TEST(NetworkInputTest, TheSizeFollowsTheShapeOfTheImage) {
-  EXPECT_EQ(ChooseInputSize({640, 360}, 147456, 32), cv::Size(512, 288));
-  EXPECT_EQ(ChooseInputSize({640, 360}, 94208, 32), cv::Size(416, 224));
-  EXPECT_EQ(ChooseInputSize({1242, 375}, 147456, 32), cv::Size(640, 192));
-  EXPECT_EQ(ChooseInputSize({360, 640}, 147456, 32), cv::Size(288, 512));
-  EXPECT_EQ(ChooseInputSize({100, 60}, 147456, 32), cv::Size(128, 64));  // not larger than it is
+  EXPECT_EQ(ChooseInputSize({640, 360}, 288, 32), cv::Size(512, 288));
+  EXPECT_EQ(ChooseInputSize({640, 360}, 224, 32), cv::Size(416, 224));
+  EXPECT_EQ(ChooseInputSize({1242, 375}, 288, 32), cv::Size(960, 288));
+  EXPECT_EQ(ChooseInputSize({360, 640}, 288, 32), cv::Size(288, 512));
+  EXPECT_EQ(ChooseInputSize({100, 60}, 288, 32), cv::Size(128, 64));  // not larger than it is
   EXPECT_EQ(ChooseInputSize({640, 360}, 10, 32), cv::Size(32, 32));
 }
 
