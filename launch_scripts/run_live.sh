@@ -15,6 +15,9 @@
 #   --capture-size SIZE, --pixel-format CODE
 #                         passed on: airdos-stereo-player --help and airdos-stereo-camera --help tell of them
 #   --no-detect           without airdos-person-detector, which is started with --camera, --video and --images
+#   --set P:S.K=V         overrides a value in process P's configuration (repeatable): frontend, human_tracker, optimizer, map_recorder,
+#                         person_detector, stereo_player or stereo_camera. In realtime pace the detector looks at every second image and
+#                         follows people in between; --set person_detector:time.detect_every=1 makes it look at each
 #   --record              also record what the processes publish to <run-dir>/output.lcm, as --video and --images do anyway
 #   --data FOLDER         also start the player on this data set, and stop when all of it has been processed; can be a log, too
 #   --loop N              with --data: play it N times as one long session (default 1), reporting progress every 500 frames
@@ -47,7 +50,7 @@ readonly IDLE_S=6
 readonly DRAIN_DEADLINE_S=600
 
 data='' loop=1 log='' speed=1 pace='' url=$AIRDOS_DEFAULT_URL run_dir='' host_network=no is_inside=no force=no check=yes detect='' record=no
-camera=() video=() images=() calibration=() source_options=()
+camera=() video=() images=() calibration=() source_options=() settings=()
 original_arguments=("$@")
 while (($# > 0)); do
   case $1 in
@@ -74,6 +77,13 @@ while (($# > 0)); do
     --side-by-side | --over-under | --swap | --rectified | --scale-calibration) source_options+=("$1") ;;
     --no-detect) detect=no ;;
     --record) record=yes ;;
+    --set)
+      need_value "$@"
+      [[ $2 =~ ^(frontend|human_tracker|optimizer|map_recorder|person_detector|stereo_player|stereo_camera):.+=.*$ ]] ||
+        die_usage "--set: '$2' is not PROCESS:section.key=value (see --help)"
+      settings+=("$2")
+      shift
+      ;;
     --data | --loop | --log | --speed | --pace | --lcm-url | --run-dir)
       need_value "$@"
       name=${1#--}
@@ -130,6 +140,8 @@ if [[ -z $detect ]]; then
   detect=no
   if ((${#source_arguments[@]} > 0)); then detect=yes; fi
 fi
+# In realtime, people followed into every second image are worth more than fewer images. First, so that the user's own comes later.
+if [[ $detect == yes && $pace == realtime ]]; then settings=("person_detector:time.detect_every=2" "${settings[@]}"); fi
 # A recording ends; a camera may go on for days.
 if ((${#video[@]} > 0 || ${#images[@]} > 0)); then record=yes; fi
 readonly source
@@ -347,16 +359,26 @@ report_ended() {
   [[ -z $log ]] || echo "played=$log"
 } > "$run_dir/state"
 
+# configuration PROCESS: fills the array configured: its overrides, and that it writes all its options to the run's folder, like
+# airdos-replay.
+configuration() {
+  local setting
+  configured=(--resolved-config "$run_dir/$1.yaml")
+  for setting in "${settings[@]}"; do
+    [[ $setting != "$1:"* ]] || configured+=(--set "$setting")
+  done
+}
+
 arguments=(--lcm-url "$url" --pace "$pace")
-# Each process writes its configuration to the run's folder, like airdos-replay.
-start frontend "$AIRDOS_BIN/airdos-frontend" "${arguments[@]}" --resolved-config "$run_dir/frontend.yaml"
-start human-tracker "$AIRDOS_BIN/airdos-human-tracker" "${arguments[@]}" --resolved-config "$run_dir/human_tracker.yaml"
-start optimizer "$AIRDOS_BIN/airdos-optimizer" "${arguments[@]}" --resolved-config "$run_dir/optimizer.yaml"
-start map-recorder "$AIRDOS_BIN/airdos-map-recorder" "${arguments[@]}" --set "output.directory=$run_dir" \
-  --resolved-config "$run_dir/map_recorder.yaml"
-if [[ $detect == yes ]]; then
-  start person-detector "$AIRDOS_BIN/airdos-person-detector" "${arguments[@]}" --resolved-config "$run_dir/person_detector.yaml"
-fi
+# People are found later than the 0.2 s after which a process goes on without them.
+patience=()
+if [[ $detect == yes && $pace == realtime ]]; then patience=(--deadline-s 0.6); fi
+for name in frontend human-tracker optimizer map-recorder person-detector; do
+  [[ " ${PROCESSES[*]} " == *" $name "* ]] || continue
+  configuration "${name//-/_}"
+  if [[ $name == map-recorder ]]; then configured+=(--set "output.directory=$run_dir"); fi
+  start "$name" "$AIRDOS_BIN/airdos-$name" "${arguments[@]}" "${patience[@]}" "${configured[@]}"
+done
 if [[ $record == yes ]]; then
   outputs='STATIC_FEATURES|HUMAN_OBSERVATIONS|STATE_ESTIMATE|MAP_UPDATE|PERSON_KEYPOINTS_LEFT|PERSON_KEYPOINTS_RIGHT|PERSON_MASK'
   start record "$AIRDOS_BIN/airdos-record" --lcm-url "$url" --out "$run_dir/output.lcm" --channels "$outputs" --force
@@ -373,13 +395,15 @@ if [[ $source == player ]] && ((${#player_input[@]} > 0)); then
   if ((loop > 1)); then player_options=(--loop "$loop" --one-session --say-every 500); fi
   if [[ $check == no ]]; then player_options+=(--no-check); fi
   if [[ $detect == yes ]]; then player_options+=(--without "keypoints,masks"); fi
+  configuration stereo_player
   start player "$AIRDOS_BIN/airdos-stereo-player" "${player_input[@]}" "${arguments[@]}" \
-    --resolved-config "$run_dir/stereo_player.yaml" "${player_options[@]}"
+    "${configured[@]}" "${player_options[@]}"
 elif [[ $source == camera ]]; then
   camera_options=()
   if [[ $detect == no ]]; then camera_options=(--nobody); fi
+  configuration stereo_camera
   start camera "$AIRDOS_BIN/airdos-stereo-camera" "${source_arguments[@]}" --lcm-url "$url" \
-    --resolved-config "$run_dir/stereo_camera.yaml" "${camera_options[@]}"
+    "${configured[@]}" "${camera_options[@]}"
 elif [[ -n $log ]]; then
   start player lcm-logplayer -s "$speed" -e "$channels" -l "$url" "$log"
 fi

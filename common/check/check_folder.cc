@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <opencv2/imgproc.hpp>
 #include <set>
 #include <utility>
 
@@ -144,16 +145,18 @@ class FolderInput : public CheckedInput {
   void set_range(const SixteenBitRange& range) { range_ = range; }
 
  private:
+  static cv::Mat GreyOf(const cv::Mat& pixels) {
+    if (pixels.channels() == 1) return pixels;
+    cv::Mat grey;
+    cv::cvtColor(pixels, grey, cv::COLOR_BGR2GRAY);
+    return grey;
+  }
   /// Images that are made from files.
   void LoadMade(std::size_t frame, CheckedPictures* pictures, FindingList* findings) const {
     ReadOrSay("images.file", pictures->where_left, findings, [&] {
       const SequenceFrame loaded = sequence_->Load(frame);
-      pictures->left =
-          DecodePicture(loaded.left_image_file, pictures->where_left, PictureColor::kGrey, range_)
-              .pixels;
-      pictures->right =
-          DecodePicture(loaded.right_image_file, pictures->where_right, PictureColor::kGrey, range_)
-              .pixels;
+      pictures->left = GreyOf(loaded.left_pixels);
+      pictures->right = GreyOf(loaded.right_pixels);
       return true;
     });
   }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 #include "common/util/error.h"
 #include "common/util/format.h"
@@ -16,6 +17,13 @@ namespace fs = std::filesystem;
 
 constexpr char kGroup[] = "import";
 constexpr char kCalibration[] = "calib.json";
+
+std::vector<std::uint8_t> PngOf(const cv::Mat& pixels) {
+  std::vector<std::uint8_t> file;
+  constexpr int kFast = 1;
+  cv::imencode(".png", pixels, file, {cv::IMWRITE_PNG_COMPRESSION, kFast});
+  return file;
+}
 
 /// What a reader would take for a part of the data set.
 const std::vector<std::string>& PartsOfDataset() {
@@ -116,8 +124,12 @@ void FolderWriter::Add(const SequenceFrame& frame, TrajectoryAxes axes) {
   const auto write = [&](const std::string& folder, const std::vector<std::uint8_t>& file) {
     Write(folder + "/" + number + EndingOfImage(file), file.data(), file.size());
   };
-  write("image_0", frame.left_image_file);
-  write("image_1", frame.right_image_file);
+  const auto write_image = [&](const std::string& folder, const std::vector<std::uint8_t>& file,
+                               const cv::Mat& pixels) {
+    write(folder, file.empty() && !pixels.empty() ? PngOf(pixels) : file);
+  };
+  write_image("image_0", frame.left_image_file, frame.left_pixels);
+  write_image("image_1", frame.right_image_file, frame.right_pixels);
   if (!frame.person_mask_file.empty()) write("rcnnseg_image_0", frame.person_mask_file);
   AddPeople("alphapose_0", number, frame.keypoints_left);
   AddPeople("alphapose_1", number, frame.keypoints_right);

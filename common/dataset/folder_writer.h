@@ -12,7 +12,8 @@
 namespace airdos {
 
 /// Writes frames as a folder that OpenStereoSequence() reads: the layout of shibuya_sequence.h,
-/// with images numbered from 000000. Images and masks are the same files, times exact to 1 us,
+/// with images numbered from 000000. Images and masks are the same files (PNG where there is none,
+/// but pixels), times exact to 1 us,
 /// calibration, keypoints and poses have all digits. Poses become NED, as the layout wants it;
 /// those of unknown axes are written as they are.
 ///

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,11 +28,14 @@ using PersonKeypoints = std::vector<Keypoint>;
 enum class TrajectoryAxes { kOptical, kNed, kUnknown };
 
 /// Everything a data set contains for one frame. Files are passed on as bytes and decoded by
-/// whoever needs the pixels.
+/// whoever needs the pixels; images that are made, by rectification, are passed on as pixels, and
+/// their files are empty.
 struct SequenceFrame {
   std::int64_t utime = 0;                     ///< us, capture time
   std::vector<std::uint8_t> left_image_file;  ///< a whole JPEG or PNG file
   std::vector<std::uint8_t> right_image_file;
+  cv::Mat left_pixels;  ///< CV_8UC1 or CV_8UC3 (BGR) if there is no file
+  cv::Mat right_pixels;
   /// An 8-bit PNG file for the left image, 0 = background; empty if there is none.
   std::vector<std::uint8_t> person_mask_file;
   KeypointLayout keypoint_layout = KeypointLayout::kCoco18;  ///< the same in every frame

@@ -70,11 +70,14 @@ void PersonDetector::Reset() {
   num_since_detection_ = 0;
 }
 
-void PersonDetector::SetImage(const cv::Mat& bgr, View* view) const {
+void PersonDetector::SetImage(const cv::Mat& image, View* view) const {
   const bool is_followed = options_.detect_every > 1;
   view->gray = cv::Mat();
-  if (!bgr.empty() && (is_followed || options_.right == PersonDetectorOptions::Right::kRows))
-    cv::cvtColor(bgr, view->gray, cv::COLOR_BGR2GRAY);
+  if (image.channels() == 1) {
+    view->gray = image;
+  } else if (is_followed || options_.right == PersonDetectorOptions::Right::kRows) {
+    cv::cvtColor(image, view->gray, cv::COLOR_BGR2GRAY);
+  }
   if (is_followed) view->flow->SetImage(view->gray);
 }
 

@@ -62,8 +62,9 @@ class PersonDetector {
   /// Forgets the images so far.
   void Reset();
 
-  /// The people in the next pair (CV_8UC3, BGR); an image that is missing is empty, and so are its
-  /// people. Throws InputError if a network does not fit its configuration.
+  /// The people in the next pair (CV_8UC3, BGR; the right one may be CV_8UC1 where the network does
+  /// not look at it); an image that is missing is empty, and so are its people. Throws InputError
+  /// if a network does not fit its configuration.
   DetectedPeople Process(const cv::Mat& left, const cv::Mat& right);
 
  private:
@@ -73,7 +74,7 @@ class PersonDetector {
     std::vector<PersonPose> people;
   };
 
-  void SetImage(const cv::Mat& bgr, View* view) const;
+  void SetImage(const cv::Mat& image, View* view) const;
   void Detect(const cv::Mat& bgr, View* view);
   void Follow(View* view) const;
   /// Without joints and people of whom too little is seen.

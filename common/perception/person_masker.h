@@ -13,7 +13,7 @@ namespace airdos {
 struct PersonMaskerOptions {
   bool use_network = true;    ///< or the joints alone
   DnnNetworkOptions network;  ///< 1 x 1 x side x side: how likely a pixel shows a person, 0..1
-  int side_px = 128;          ///< of its input, which is RGB from 0 to 1
+  int side_px = 96;           ///< of its input, which is RGB from 0 to 1
   int min_height_px = 80;     ///< people of whom less is seen are marked by their joints alone
   double min_score = 0.1;     ///< of joints
 };

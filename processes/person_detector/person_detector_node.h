@@ -33,8 +33,9 @@ class PersonDetectorNode : public FrameNode<PersonDetectorInputs> {
 
  private:
   /// The image, or an empty one.
-  cv::Mat Pixels(const std::string& channel, const std::optional<image_t>& message);
+  cv::Mat Pixels(const std::string& channel, const std::optional<image_t>& message, bool is_gray);
 
+  bool is_right_gray_;
   PersonDetector detector_;
 };
 

@@ -99,9 +99,15 @@ void ImagePacker::Pack(const std::vector<std::uint8_t>& file, const std::string&
   message->width = picture.pixels.cols;
   message->height = picture.pixels.rows;
   if (header.bits != 16 && PackUnchanged(file, message)) return;
+  Pack(picture.pixels, name, message);
+}
+
+void ImagePacker::Pack(const cv::Mat& pixels, const std::string& name, image_t* message) {
+  message->width = pixels.cols;
+  message->height = pixels.rows;
   if (options_.encoding == ImagePackerOptions::Encoding::kPng) {
-    PackPng(picture.pixels, message);
-  } else if (!PackJpeg(picture.pixels, message)) {
+    PackPng(pixels, message);
+  } else if (!PackJpeg(pixels, message)) {
     throw InputError(name + ": does not fit into " + std::to_string(options_.max_image_bytes) +
                      " bytes at any of the JPEG qualities");
   }

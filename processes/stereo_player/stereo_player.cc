@@ -117,15 +117,20 @@ StereoPlayer::Frame StereoPlayer::Load(std::size_t index) {
 
   const FrameFiles files = sequence_->files(index);
   const auto pack_image = [&](const char* channel, const std::vector<std::uint8_t>& file,
-                              const std::string& name) {
+                              const cv::Mat& pixels, const std::string& name) {
     auto message = MessageOf<image_t>(frame.header);
-    SetRangeFor(file);
-    packer_.Pack(file, name.empty() ? "frame " + std::to_string(index) + " for " + channel : name,
-                 &message);
+    const std::string where =
+        name.empty() ? "frame " + std::to_string(index) + " for " + channel : name;
+    if (file.empty() && !pixels.empty()) {
+      packer_.Pack(pixels, where, &message);
+    } else {
+      SetRangeFor(file);
+      packer_.Pack(file, where, &message);
+    }
     messages.push_back(Pack(channel, message, name));
   };
-  pack_image(channel::kCameraLeft, data.left_image_file, files.left_image);
-  pack_image(channel::kCameraRight, data.right_image_file, files.right_image);
+  pack_image(channel::kCameraLeft, data.left_image_file, data.left_pixels, files.left_image);
+  pack_image(channel::kCameraRight, data.right_image_file, data.right_pixels, files.right_image);
   messages.push_back(PackKeypoints(channel::kPersonKeypointsLeft, frame.header,
                                    data.keypoint_layout, data.keypoints_left,
                                    files.keypoints_left));

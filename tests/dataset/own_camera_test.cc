@@ -7,6 +7,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <string>
@@ -143,8 +144,9 @@ class OwnCameraTest : public testing::Test {
     if (frame_seq_ != message.seq) frame_ = sequence.Load(static_cast<std::size_t>(message.seq));
     frame_seq_ = message.seq;
     message.encoding = image_t::ENCODING_PNG;
-    message.data =
-        event.channel == channel::kCameraLeft ? frame_.left_image_file : frame_.right_image_file;
+    cv::imencode(".png",
+                 event.channel == channel::kCameraLeft ? frame_.left_pixels : frame_.right_pixels,
+                 message.data);
     message.num_bytes = static_cast<std::int32_t>(message.data.size());
     return message;
   }

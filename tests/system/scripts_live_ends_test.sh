@@ -231,7 +231,9 @@ live_takes_a_camera_and_makes_what_the_demo_makes() {
   for process in "${processes[@]}" person-detector; do
     started_with "$process" "--pace realtime"
     live_says out "run_live.sh: $process: exit code 0"
+    started_with "$process" "--deadline-s 0.6 --resolved-config $work/run/${process//-/_}.yaml"
   done
+  started_with person-detector "--set person_detector:time.detect_every=2"
   ran 1 "^airdos-stereo-camera --camera $log --calibration $log $log --side-by-side --rate 30 --capture-size 640x240 --lcm-url udpm://.* \
 --resolved-config $work/run/stereo_camera.yaml\$"
   live_says err 'airdos-stereo-camera: warning: 2.3 s behind, growing'
@@ -247,6 +249,7 @@ live_takes_a_camera_and_makes_what_the_demo_makes() {
   ran 1 "^airdos-stereo-camera .* --over-under .*--nobody\$"
   ! [[ -e $work/run/person-detector.log ]] || fail "the detector was started"
   started_with optimizer "--pace lockstep"
+  if grep -q -e "--deadline-s\|--set" "$work/run/optimizer.log"; then fail "optimizer.log: $(cat "$work/run/optimizer.log")"; fi
   FAILS=camera start_live --camera "$log" --side-by-side --calibration "$log" --no-detect
   end_live 2
   live_says err 'airdos-stereo-camera: no such device'
@@ -268,6 +271,20 @@ live_plays_a_recording() {
   start_live --images "$work" --times "$log" --calibration "$log" --no-detect --pace realtime
   end_live 0
   ran 1 "^airdos-stereo-player --images $work --calibration $log --times $log --lcm-url udpm://.* --pace realtime --resolved-config $work/run/stereo_player.yaml\$"
+}
+
+live_sets_a_value_of_one_process() {
+  fresh
+  start_live --images "$work" --times "$log" --calibration "$log" --pace realtime --set person_detector:time.detect_every=1 \
+    --set optimizer:window.num_frames=7 --set stereo_player:image.max_image_bytes=50000
+  end_live 0
+  started_with person-detector "--set person_detector:time.detect_every=2 --set person_detector:time.detect_every=1"
+  started_with optimizer "--set optimizer:window.num_frames=7"
+  ran 1 "^airdos-stereo-player .* --set stereo_player:image.max_image_bytes=50000 "
+  if grep -q -e --set "$work/run/frontend.log"; then fail "frontend.log: $(cat "$work/run/frontend.log")"; fi
+  local -a live_here=(env AIRDOS_BIN="$work/bin" "$live" --run-dir "$work/other")
+  expect 2 "--set: 'window.num_frames=7' is not PROCESS:section.key=value" "${live_here[@]}" --set window.num_frames=7
+  expect 2 "--set: 'recorder:a.b=7' is not PROCESS:section.key=value" "${live_here[@]}" --set recorder:a.b=7
 }
 
 live_says_that_it_can_do_without_a_detector() {
@@ -416,6 +433,7 @@ live_ends_when_all_have_ended
 live_ends_as_its_player_does
 live_takes_a_camera_and_makes_what_the_demo_makes
 live_plays_a_recording
+live_sets_a_value_of_one_process
 live_says_that_it_can_do_without_a_detector
 live_refuses_before_it_starts_anybody
 live_that_is_killed_leaves_nobody

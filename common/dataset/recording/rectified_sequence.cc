@@ -1,22 +1,9 @@
 #include "common/dataset/recording/rectified_sequence.h"
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "common/util/check.h"
 #include "common/util/error.h"
 
 namespace airdos {
-namespace {
-
-std::vector<std::uint8_t> PngOf(const cv::Mat& image) {
-  std::vector<std::uint8_t> file;
-  constexpr int kFast = 1;
-  cv::imencode(".png", image, file, {cv::IMWRITE_PNG_COMPRESSION, kFast});
-  return file;
-}
-
-}  // namespace
-
 RectifiedSequence::RectifiedSequence(std::unique_ptr<StereoRecording> recording,
                                      const StereoRig& rig, const RectifierOptions& options)
     : recording_(std::move(recording)),
@@ -57,8 +44,8 @@ std::optional<SequenceFrame> RectifiedSequence::TryLoad(std::size_t index) const
   if (!pair) return std::nullopt;
   SequenceFrame frame;
   frame.utime = pair->utime;
-  frame.left_image_file = PngOf(rectifier_.Left(pair->left));
-  frame.right_image_file = PngOf(rectifier_.Right(pair->right));
+  frame.left_pixels = rectifier_.Left(pair->left);
+  frame.right_pixels = rectifier_.Right(pair->right);
   frame.ground_truth = ground_truth(index);
   return frame;
 }
