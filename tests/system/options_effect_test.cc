@@ -341,6 +341,20 @@ const Covered kCovered[] = {
      "LargeImagesGetTheBestQualityThatFits"},
     {"stereo_player:image.jpeg_qualities", "node/stereo_player_test.cc",
      "LargeImagesGetTheBestQualityThatFits"},
+    {"stereo_camera:capture.max_waiting", "node/camera_capture_test.cc",
+     "TheOldestIsDroppedForANewerOneAndSaidNowAndThen"},
+    {"stereo_camera:capture.stall_s", "node/camera_capture_test.cc",
+     "DevicesAreLostWhenTheyAreGoneOrSilent"},
+    {"stereo_camera:capture.retry_s", "node/camera_capture_test.cc",
+     "ALostSourceIsSaidOnceWaitedForAndGoneOnWith"},
+    {"stereo_camera:capture.max_skew_ms", "node/camera_capture_test.cc",
+     "ImagesThatAreNotTakenTogetherAreWarnedOfOnce"},
+    {"stereo_camera:capture.complain_s", "node/camera_capture_test.cc",
+     "TheOldestIsDroppedForANewerOneAndSaidNowAndThen"},
+    {"stereo_camera:image.max_image_bytes", "node/camera_messages_test.cc",
+     "TheQualityIsLoweredUntilImagesFitAndRaisedAgain"},
+    {"stereo_camera:image.jpeg_qualities", "node/camera_messages_test.cc",
+     "TheQualityIsLoweredUntilImagesFitAndRaisedAgain"},
 };
 
 /// Of all configuration files: process:key, and its value.
