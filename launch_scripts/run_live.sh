@@ -7,13 +7,10 @@
 #   --images DIR [DIR]    the same with folders of the left and the right images, or one with both
 #   --calibration FILE [FILE]
 #                         needed with these three: of the unrectified pair (Kalibr, ROS, OpenCV, ...: airdos-calibration show FILE)
-#   --side-by-side, --over-under
-#                         where the two images are in the one of a device or video
+#   --side-by-side        in the one image of a device or video, the left one is on the left
+#   --over-under          it is on top
 #   --times FILE          with --images: their times
 #   --rate HZ             images a second, where they have no times; with --camera: that it shall give
-#   --swap, --rectified, --scale-calibration, --size SIZE, --baseline-unit UNIT, --lens LENS, --kitti-cameras LEFT,RIGHT, --alpha ALPHA,
-#   --capture-size SIZE, --pixel-format CODE
-#                         passed on: airdos-stereo-player --help and airdos-stereo-camera --help tell of them
 #   --no-detect           without airdos-person-detector, which is started with --camera, --video and --images
 #   --set P:S.K=V         overrides a value in process P's configuration (repeatable): frontend, human_tracker, optimizer, map_recorder,
 #                         person_detector, stereo_player or stereo_camera. In realtime pace the detector looks at every second image and
@@ -32,6 +29,9 @@
 #   --no-check            do not check the data set or log before playing it
 #   --host-network        run in this machine's network instead of a separate namespace
 #   --help                this text
+#
+# Also passed on, as airdos-stereo-player --help and airdos-stereo-camera --help tell: --swap, --rectified, --scale-calibration, --size,
+# --baseline-unit, --lens, --kitti-cameras, --alpha, --capture-size, --pixel-format.
 #
 # Without a source it waits for images and runs until Ctrl-C, with --camera as well. The messages of each process go to
 # <run-dir>/<process>.log (warnings and errors are also shown here; so is a lag that grows), its resolved configuration to
