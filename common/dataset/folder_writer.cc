@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 
+#include "common/dataset/image_file.h"
 #include "common/util/error.h"
 #include "common/util/format.h"
 #include "common/util/json_file.h"
@@ -17,13 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr char kGroup[] = "import";
 constexpr char kCalibration[] = "calib.json";
-
-std::vector<std::uint8_t> PngOf(const cv::Mat& pixels) {
-  std::vector<std::uint8_t> file;
-  constexpr int kFast = 1;
-  cv::imencode(".png", pixels, file, {cv::IMWRITE_PNG_COMPRESSION, kFast});
-  return file;
-}
 
 /// What a reader would take for a part of the data set.
 const std::vector<std::string>& PartsOfDataset() {
@@ -126,7 +119,7 @@ void FolderWriter::Add(const SequenceFrame& frame, TrajectoryAxes axes) {
   };
   const auto write_image = [&](const std::string& folder, const std::vector<std::uint8_t>& file,
                                const cv::Mat& pixels) {
-    write(folder, file.empty() && !pixels.empty() ? PngOf(pixels) : file);
+    write(folder, file.empty() && !pixels.empty() ? EncodePng(pixels) : file);
   };
   write_image("image_0", frame.left_image_file, frame.left_pixels);
   write_image("image_1", frame.right_image_file, frame.right_pixels);

@@ -212,4 +212,11 @@ std::string SizeMismatchText(std::int64_t width, std::int64_t height, const std:
   return text + Format(": %.3g times as large", factor);
 }
 
+std::vector<std::uint8_t> EncodePng(const cv::Mat& pixels) {
+  std::vector<std::uint8_t> file;
+  constexpr int kFast = 1;
+  cv::imencode(".png", pixels, file, {cv::IMWRITE_PNG_COMPRESSION, kFast});
+  return file;
+}
+
 }  // namespace airdos

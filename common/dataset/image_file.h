@@ -33,6 +33,10 @@ std::optional<SixteenBitRange> FindSixteenBitRange(const StereoSequence& sequenc
 /// The same from up to 20 of these files, evenly spread.
 std::optional<SixteenBitRange> FindSixteenBitRange(const std::vector<std::string>& paths);
 
+/// A PNG file of an image, quickly and therefore not as small as can be. The same for the same
+/// pixels.
+std::vector<std::uint8_t> EncodePng(const cv::Mat& pixels);
+
 /// How DecodePicture() treats colour.
 enum class PictureColor {
   kGrey,      ///< CV_8UC1

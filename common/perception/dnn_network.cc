@@ -54,14 +54,18 @@ std::string OnnxBytes(const DnnNetworkOptions& options) {
 
 }  // namespace
 
-DnnNetwork::DnnNetwork(const DnnNetworkOptions& options) : file_(options.file) {
-  const std::string bytes = OnnxBytes(options);
+void DnnNetwork::Read() {
+  net_ = cv::dnn::readNetFromONNX(onnx_.data(), onnx_.size());
+  net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
+  net_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
+}
+
+DnnNetwork::DnnNetwork(const DnnNetworkOptions& options)
+    : file_(options.file), onnx_(OnnxBytes(options)) {
   const QuietOpenCv quiet;
   try {
-    if (bytes.empty()) throw InputError(file_ + ": is empty");
-    net_ = cv::dnn::readNetFromONNX(bytes.data(), bytes.size());
-    net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-    net_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
+    if (onnx_.empty()) throw InputError(file_ + ": is empty");
+    Read();
     const std::vector<cv::String> known = net_.getUnconnectedOutLayersNames();
     outputs_.assign(options.outputs.begin(), options.outputs.end());
     if (outputs_.empty()) {
@@ -82,6 +86,10 @@ std::vector<cv::Mat> DnnNetwork::Process(const cv::Mat& blob) {
   const QuietOpenCv quiet;
   std::vector<cv::Mat> results;
   try {
+    // OpenCV 4.6 gives wrong results where a network's input changes its size.
+    const std::vector<int> shape(blob.size.p, blob.size.p + blob.dims);
+    if (!input_shape_.empty() && shape != input_shape_) Read();
+    input_shape_ = shape;
     net_.setInput(blob);
     net_.forward(results, outputs_);
   } catch (const cv::Exception& error) {

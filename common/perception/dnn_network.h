@@ -27,14 +27,19 @@ class DnnNetwork {
   explicit DnnNetwork(const DnnNetworkOptions& options);
 
   /// The outputs for one input (4 dimensions, CV_32F). Throws InputError naming the file if the
-  /// input does not fit, as one of another size may not.
+  /// input does not fit, as one of another size may not. An input of another size than the last one
+  /// takes as long as the constructor.
   std::vector<cv::Mat> Process(const cv::Mat& blob);
 
   const std::string& file() const { return file_; }
 
  private:
+  void Read();  ///< the network anew
+
   std::string file_;
+  std::string onnx_;
   cv::dnn::Net net_;
+  std::vector<int> input_shape_;  // of the last input
   std::vector<cv::String> outputs_;
 };
 

@@ -15,11 +15,15 @@ struct PersonMaskerOptions {
   DnnNetworkOptions network;  ///< 1 x 1 x side x side: how likely a pixel shows a person, 0..1
   int side_px = 96;           ///< of its input, which is RGB from 0 to 1
   int min_height_px = 80;     ///< people of whom less is seen are marked by their joints alone
-  double min_score = 0.1;     ///< of joints
+  /// Shorter side of the input that shows the whole image; 0: the network does not look at it.
+  int image_short_side_px = 224;
+  double min_score = 0.1;  ///< of joints
 };
 
 /// Marks people by their joints (limbs, trunk and head as wide as a person's, DrawBodyMask()), and
-/// those who are large enough also by a network that looks at their box.
+/// those who are large enough also by a network that looks at their box. The same network looks at
+/// the whole image, too: there it marks people who are so near that they fill much of it, whose
+/// joints are often not found.
 class PersonMasker {
  public:
   /// Throws InputError if the network's file cannot be used.
@@ -31,9 +35,12 @@ class PersonMasker {
 
  private:
   void PaintWithin(const cv::Mat& bgr, const cv::Rect2d& box, cv::Mat* mask);
+  void PaintImage(const cv::Mat& bgr, cv::Mat* mask);
 
   PersonMaskerOptions options_;
-  std::unique_ptr<DnnNetwork> net_;
+  // One for each size of input: a network is read anew for another one.
+  std::unique_ptr<DnnNetwork> net_of_people_;
+  std::unique_ptr<DnnNetwork> net_of_image_;
 };
 
 }  // namespace airdos

@@ -114,6 +114,9 @@ void AddMasks(PersonDetectorOptions* options, OptionTable* table) {
              "node of a TensorFlow.js model where the image comes in; empty: its placeholder");
   table->Add("masks.outputs", &masks->network.outputs, "name of its output");
   table->Add("masks.side_px", &masks->side_px, {32, 1024}, "px", "of its input, a square");
+  table->Add("masks.image_short_side_px", &masks->image_short_side_px, {0, 1024}, "px",
+             "shorter side of its input when it looks at the whole image, for people who are near; "
+             "0: it does not");
   table->Add("masks.min_height_px", &masks->min_height_px, {1, 10000}, "px",
              "people who are smaller are marked by their joints alone");
 }

@@ -8,6 +8,7 @@
 #include "airdos/person_keypoints_t.hpp"
 #include "airdos/person_mask_t.hpp"
 #include "airdos/stereo_calibration_t.hpp"
+#include "common/dataset/image_file.h"
 #include "common/util/check.h"
 #include "processes/node/message/channels.h"
 #include "processes/node/message/conversions.h"
@@ -70,9 +71,7 @@ std::optional<std::vector<std::uint8_t>> CameraMessages::AsJpeg(const cv::Mat& i
 
 std::optional<std::vector<std::uint8_t>> CameraMessages::Encoded(const cv::Mat& image) {
   if (!options_.is_lossless) return AsJpeg(image);
-  std::vector<std::uint8_t> bytes;
-  constexpr int kFast = 1;
-  cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, kFast});
+  std::vector<std::uint8_t> bytes = EncodePng(image);
   if (static_cast<int>(bytes.size()) > options_.max_image_bytes && !is_large_said_) {
     is_large_said_ = true;
     notes_.push_back("PNG images above the limit: receivers need a large socket buffer");

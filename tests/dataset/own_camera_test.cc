@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -178,16 +179,21 @@ class OwnCameraTest : public testing::Test {
     return message;
   }
 
-  /// Runs the estimator on the rectified images, with the log's people.
-  ChainRun Run(const RectifiedSequence& sequence) {
+  /// Runs the estimator on the rectified images, with the log's people or with those whom the
+  /// detector finds.
+  ChainRun Run(const RectifiedSequence& sequence, bool detects = false) {
     frame_seq_ = -1;
     const std::string path = scratch_.PathOf("rectified.lcm");
     EventLogWriter writer(path);
     for (const LogEvent& event : events_) {
+      const bool is_of_people = event.channel == channel::kPersonKeypointsLeft ||
+                                event.channel == channel::kPersonKeypointsRight ||
+                                event.channel == channel::kPersonMask;
+      if (detects && is_of_people) continue;
       const LogEvent changed = Rectified(event, sequence);
       writer.Append(changed.utime, changed.channel, changed.payload.data(), changed.payload.size());
     }
-    return RunChain({path, "on", true, {}});
+    return RunChain({path, "on", true, {}, detects});
   }
 
   const ScratchFolder scratch_;
@@ -234,6 +240,23 @@ TEST_F(OwnCameraTest, IsAsGoodAsRectifiedOriginals) {
     EXPECT_LT(run.trajectory.ate_se3_m.rmse, 2 * original_ate_m);
     EXPECT_GT(run.use.joints_seen, 0.8 * originals.use.joints_seen) << "the image shows less";
   }
+}
+
+// All that a user has: two videos and a calibration.
+TEST_F(OwnCameraTest, PeopleMayBeFoundByTheNetworks) {
+  if (!std::filesystem::exists(AIRDOS_BINARY_DIR "/networks/movenet-multipose.json")) {
+    GTEST_SKIP() << "no networks in the build folder: launch_scripts/fetch_networks.sh";
+  }
+  const ChainRun originals = RunChain({kLog, "on", true, {}});
+  const double original_ate_m = originals.trajectory.ate_se3_m.rmse;
+  const auto sequence = Open(Videos(), "kalibr");
+  const ChainRun run = Run(*sequence, true);
+  std::cout << "ATE, m: " << run.trajectory.ate_se3_m.rmse << ", of the originals "
+            << original_ate_m << "\n";
+  EXPECT_EQ(run.result.num_posed, originals.result.num_frames);
+  EXPECT_TRUE(run.result.remarks.empty()) << run.result.remarks.front();
+  EXPECT_LT(run.trajectory.ate_se3_m.rmse, 2 * original_ate_m);
+  EXPECT_GT(run.use.joints_seen, 0.3 * originals.use.joints_seen);
 }
 
 }  // namespace

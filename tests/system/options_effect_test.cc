@@ -332,6 +332,8 @@ const Covered kCovered[] = {
      "ALargePersonIsMarkedByTheNetwork"},
     {"person_detector:masks.side_px", "unit/perception/person_detector_test.cc",
      "ALargePersonIsMarkedByTheNetwork"},
+    {"person_detector:masks.image_short_side_px", "unit/perception/person_detector_test.cc",
+     "TheMaskNetworkLooksAtTheWholeImage"},
     {"person_detector:masks.min_height_px", "unit/perception/person_detector_test.cc",
      "ALargePersonIsMarkedByTheNetwork"},
     {"stereo_player:lockstep.wait_for", "node/lockstep_gate_test.cc", "StartsWhenAllAreReady"},

@@ -196,6 +196,7 @@ TEST_F(PersonDetectorTest, ALargePersonIsMarkedByTheNetwork) {
   EXPECT_EQ(mark_of(168), 0);
   options_.masks.use_network = true;
   options_.masks.side_px = 64;
+  options_.masks.image_short_side_px = 0;
   options_.masks.network.file = scratch_.Write("mask.onnx", TinyMask({64, 64}));
   options_.masks.min_height_px = 75;
   EXPECT_EQ(mark_of(168), 255);
@@ -203,6 +204,23 @@ TEST_F(PersonDetectorTest, ALargePersonIsMarkedByTheNetwork) {
   EXPECT_EQ(mark_of(168), 0);
   options_.masks.network.outputs = {"nothing"};
   EXPECT_TRUE(Holds(ErrorOf([&] { mark_of(0); }), "has no output 'nothing'"));
+}
+
+// Whoever fills the image has hardly a joint in it.
+TEST_F(PersonDetectorTest, TheMaskNetworkLooksAtTheWholeImage) {
+  options_.use_masks = true;
+  options_.masks.use_network = true;
+  options_.masks.network.file = scratch_.Write("mask.onnx", TinyMask({96, 64}));
+  options_.masks.image_short_side_px = 64;
+  cv::Mat image(240, 320, CV_8UC3, cv::Scalar::all(0));
+  image(cv::Rect(200, 60, 100, 90)) = cv::Scalar(0, 0, 255);
+  const cv::Mat mask = Make({}).Process(image, {}).mask;
+  EXPECT_EQ(mask.size(), image.size());
+  cv::Mat expected(240, 320, CV_8UC1, cv::Scalar::all(0));
+  expected(cv::Rect(200, 60, 100, 90)) = 255;
+  EXPECT_LT(cv::countNonZero(mask != expected), 0.1 * 100 * 90) << "but for pixels at its edge";
+  options_.masks.image_short_side_px = 0;
+  EXPECT_EQ(cv::countNonZero(Make({}).Process(image, {}).mask), 0);
 }
 
 TEST_F(PersonDetectorTest, TheHeadDecidesTheNetwork) {
