@@ -13,8 +13,9 @@
 #   --rate HZ             images a second, where they have no times; with --camera: that it shall give
 #   --no-detect           without airdos-person-detector, which is started with --camera, --video and --images
 #   --set P:S.K=V         overrides a value in process P's configuration (repeatable): frontend, human_tracker, optimizer, map_recorder,
-#                         person_detector, stereo_player or stereo_camera. In realtime pace the detector looks at every second image and
-#                         follows people in between; --set person_detector:time.detect_every=1 makes it look at each
+#                         person_detector, stereo_player or stereo_camera. In realtime pace the detector looks at every second image, reduced
+#                         to 256 px, and follows people in between; person_detector:time.detect_every=1 makes it look at each,
+#                         person_detector:network.short_side_px=288 as closely as a replay
 #   --record              also record what the processes publish to <run-dir>/output.lcm, as --video and --images do anyway
 #   --data FOLDER         also start the player on this data set, and stop when all of it has been processed; can be a log, too
 #   --loop N              with --data: play it N times as one long session (default 1), reporting progress every 500 frames
@@ -141,7 +142,7 @@ if [[ -z $detect ]]; then
   if ((${#source_arguments[@]} > 0)); then detect=yes; fi
 fi
 # In realtime, people followed into every second image are worth more than fewer images. First, so that the user's own comes later.
-if [[ $detect == yes && $pace == realtime ]]; then settings=("person_detector:time.detect_every=2" "${settings[@]}"); fi
+if [[ $detect == yes && $pace == realtime ]]; then settings=(person_detector:{time.detect_every=2,network.short_side_px=256} "${settings[@]}"); fi
 # A recording ends; a camera may go on for days.
 if ((${#video[@]} > 0 || ${#images[@]} > 0)); then record=yes; fi
 readonly source

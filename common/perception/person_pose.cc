@@ -31,7 +31,7 @@ void KeepBest(double max_overlap, std::vector<PersonPose>* people) {
       const double all = person.box_px.area() + better.box_px.area() - common;
       return common > max_overlap * all;
     });
-    if (!is_again) kept.push_back(std::move(person));
+    if (!is_again) kept.push_back(person);
   }
   *people = std::move(kept);
 }

@@ -10,10 +10,10 @@ namespace airdos {
 struct PoseNetworkOptions {
   DnnNetworkOptions network;
   NetworkInputOptions input;
-  int short_side_px = 288;  ///< of the input, where it has no fixed size: see ChooseInputSize()
-  double min_score = 0.2;         ///< of a person
-  double max_overlap = 0.4;       ///< of the boxes of two people, who are the same one beyond it
-  int max_people = 60;            ///< in one image, the most certain ones
+  int short_side_px = 288;   ///< of the input, where it has no fixed size: see ChooseInputSize()
+  double min_score = 0.2;    ///< of a person
+  double max_overlap = 0.4;  ///< of the boxes of two people, who are the same one beyond it
+  int max_people = 60;       ///< in one image, the most certain ones
 };
 
 }  // namespace airdos

@@ -116,10 +116,10 @@ TEST_F(ReplayTest, PeopleThatADetectorPublishesAreOutput) {
   WriteInputLog("in.lcm", 4);
   LogSource source(folder_ + "in.lcm");
   std::vector<ReplayNode> nodes;
-  nodes.push_back({std::make_unique<TextNode>("detector",
-                                              std::vector<std::string>{channel::kCameraLeft},
-                                              channel::kPersonKeypointsLeft),
-                   {channel::kPersonKeypointsLeft}});
+  nodes.push_back(
+      {std::make_unique<TextNode>("detector", std::vector<std::string>{channel::kCameraLeft},
+                                  channel::kPersonKeypointsLeft),
+       {channel::kPersonKeypointsLeft}});
   ReplayOptions options;
   options.out_path = folder_ + "out.lcm";
   const ReplayResult result = Replay(&source, nodes, options);

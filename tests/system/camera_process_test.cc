@@ -106,7 +106,7 @@ class CameraProcessTest : public testing::Test {
   void Unplug() const { fs::remove(device()); }
   std::unique_ptr<ChildProcess> StartDevice(const std::vector<std::string>& more) const {
     std::vector<std::string> command = {"env",
-                                        "LD_PRELOAD=" AIRDOS_FAKE_V4L2_LIBRARY,
+                                        std::string("LD_PRELOAD=") + AIRDOS_FAKE_V4L2_LIBRARY,
                                         "AIRDOS_FAKE_V4L2=" + device(),
                                         kProgram,
                                         "--camera",

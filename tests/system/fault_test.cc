@@ -197,7 +197,9 @@ struct SlowOptimizer {
 };
 
 /// What ctest shows.
-void PrintTo(const SlowOptimizer& slow, std::ostream* stream) { *stream << slow.name; }
+[[maybe_unused]] void PrintTo(const SlowOptimizer& slow, std::ostream* stream) {
+  *stream << slow.name;
+}
 
 class SlowOptimizerTest : public FaultTest, public testing::WithParamInterface<SlowOptimizer> {};
 

@@ -233,7 +233,7 @@ live_takes_a_camera_and_makes_what_the_demo_makes() {
     live_says out "run_live.sh: $process: exit code 0"
     started_with "$process" "--deadline-s 0.6 --resolved-config $work/run/${process//-/_}.yaml"
   done
-  started_with person-detector "--set person_detector:time.detect_every=2"
+  started_with person-detector "--set person_detector:time.detect_every=2 --set person_detector:network.short_side_px=256"
   ran 1 "^airdos-stereo-camera --camera $log --calibration $log $log --side-by-side --rate 30 --capture-size 640x240 --lcm-url udpm://.* \
 --resolved-config $work/run/stereo_camera.yaml\$"
   live_says err 'airdos-stereo-camera: warning: 2.3 s behind, growing'
@@ -278,7 +278,7 @@ live_sets_a_value_of_one_process() {
   start_live --images "$work" --times "$log" --calibration "$log" --pace realtime --set person_detector:time.detect_every=1 \
     --set optimizer:window.num_frames=7 --set stereo_player:image.max_image_bytes=50000
   end_live 0
-  started_with person-detector "--set person_detector:time.detect_every=2 --set person_detector:time.detect_every=1"
+  started_with person-detector "--set person_detector:network.short_side_px=256 --set person_detector:time.detect_every=1"
   started_with optimizer "--set optimizer:window.num_frames=7"
   ran 1 "^airdos-stereo-player .* --set stereo_player:image.max_image_bytes=50000 "
   if grep -q -e --set "$work/run/frontend.log"; then fail "frontend.log: $(cat "$work/run/frontend.log")"; fi

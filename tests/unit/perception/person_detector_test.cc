@@ -30,8 +30,9 @@ PersonPose PersonAt(double u_px, double v_px) {
   PersonPose person;
   person.score = 0.8;
   for (int joint = 0; joint < kNumPoseJoints; ++joint) {
-    person.joints[static_cast<std::size_t>(joint)] = {u_px + 12 * (joint % 5),
-                                                      v_px + 25 * (joint / 5), 0.9};
+    const int column = joint % 5;
+    const int row = joint / 5;
+    person.joints[static_cast<std::size_t>(joint)] = {u_px + 12 * column, v_px + 25 * row, 0.9};
   }
   person.box_px = BoxOfJoints(person, 0.1);
   return person;
