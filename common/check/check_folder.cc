@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <opencv2/imgproc.hpp>
 #include <set>
 #include <utility>
 
@@ -114,8 +115,12 @@ class FolderInput : public CheckedInput {
       pictures.where_left = files.left_image;
       pictures.where_right = files.right_image;
       pictures.where_mask = files.person_mask;
-      pictures.left = ReadPicture(files.left_image, range_, findings);
-      pictures.right = ReadPicture(files.right_image, range_, findings);
+      if (sequence_->has_camera_files()) {
+        pictures.left = ReadPicture(files.left_image, range_, findings);
+        pictures.right = ReadPicture(files.right_image, range_, findings);
+      } else {
+        LoadMade(frame, &pictures, findings);
+      }
       if (fs::exists(files.person_mask)) pictures.mask = ReadMask(files.person_mask, findings);
       FindingList ignored;  // CheckKeypoints() has reported them
       pictures.people_left = ReadPeople(files.keypoints_left, &ignored);
@@ -140,6 +145,21 @@ class FolderInput : public CheckedInput {
   void set_range(const SixteenBitRange& range) { range_ = range; }
 
  private:
+  static cv::Mat GreyOf(const cv::Mat& pixels) {
+    if (pixels.channels() == 1) return pixels;
+    cv::Mat grey;
+    cv::cvtColor(pixels, grey, cv::COLOR_BGR2GRAY);
+    return grey;
+  }
+  /// Images that are made from files.
+  void LoadMade(std::size_t frame, CheckedPictures* pictures, FindingList* findings) const {
+    ReadOrSay("images.file", pictures->where_left, findings, [&] {
+      const SequenceFrame loaded = sequence_->Load(frame);
+      pictures->left = GreyOf(loaded.left_pixels);
+      pictures->right = GreyOf(loaded.right_pixels);
+      return true;
+    });
+  }
   std::string folder_;
   std::unique_ptr<StereoSequence> sequence_;
   SixteenBitRange range_;

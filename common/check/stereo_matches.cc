@@ -14,7 +14,7 @@ namespace {
 constexpr float kMaxRatio = 0.8F;   // best to second-best distance (Lowe)
 constexpr float kMaxHamming = 60;   // bits of 256
 constexpr double kMaxAlignPx = 3;   // maximum error of a corner found in the pyramid
-constexpr int kMinRowMatches = 20;  // fewer are not significant for a single pair
+constexpr int kMinRowMatches = 20;  // fewer are not significant
 constexpr double kNoSignPx = 0.3;   // the sign of a smaller disparity is not significant
 
 /// Tolerance for matching a row of `a` with a row of `b`: even an unrectified pair is rarely off by
@@ -86,9 +86,7 @@ StereoMatches MatchStereo(const cv::Mat& left, const cv::Mat& right, int max_cor
   return Align(left, right, MatchByDescriptor(left, right, max_corners));
 }
 
-std::optional<RowError> MeasureRowError(const cv::Mat& left, const cv::Mat& right,
-                                        int max_corners) {
-  const StereoMatches matches = MatchStereo(left, right, max_corners);
+std::optional<RowError> RowErrorOf(const StereoMatches& matches) {
   const std::size_t num_matches = matches.left.size();
   if (num_matches < kMinRowMatches) return std::nullopt;
   std::vector<double> rows_px = matches.RowDifferences();

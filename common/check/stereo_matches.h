@@ -22,15 +22,15 @@ struct StereoMatches {
 /// used.
 StereoMatches MatchStereo(const cv::Mat& left, const cv::Mat& right, int max_corners);
 
-/// Summary of the rows and disparities of a pair's matches.
+/// Summary of the rows and disparities of matches.
 struct RowError {
   int num_matches = 0;
   double median_px = 0;       ///< of |v_right - v_left|; near 0 if the images are rectified
   double share_negative = 0;  ///< share of negative disparities; 1 if the images are exchanged
 };
 
-/// Nothing if there are too few matches.
-std::optional<RowError> MeasureRowError(const cv::Mat& left, const cv::Mat& right, int max_corners);
+/// Nothing if there are fewer than 20 matches, which are not significant.
+std::optional<RowError> RowErrorOf(const StereoMatches& matches);
 
 }  // namespace airdos
 

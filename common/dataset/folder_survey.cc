@@ -8,6 +8,7 @@
 #include "common/dataset/file_name.h"
 #include "common/dataset/image_names.h"
 #include "common/dataset/kitti_tracking_sequence.h"
+#include "common/dataset/recording/euroc_sequence.h"
 #include "common/dataset/stereo_sequence.h"
 #include "common/util/error.h"
 
@@ -91,6 +92,8 @@ void FindInReadFolder(const ReadFolder& folder, std::vector<UnreadFiles>* unread
       {folder.path, (num_read == 0 ? "holds only " : "holds ") + kinds, num_read == 0});
 }
 
+constexpr char kImport[] = "; airdos-import --keypoints-left reads those of other programs";
+
 std::string Keypoints() {
   return "a .txt file per image with a row `u v confidence ..` per person";
 }
@@ -111,8 +114,8 @@ std::vector<ReadFolder> ReadFolders(const std::string& folder) {
     folders = {{root + (has_letters ? "/image_l" : "/image_0"), images, ".png or .jpg"},
                {root + (has_letters ? "/image_r" : "/image_1"), images, ".png or .jpg"}};
   }
-  folders.push_back({root + "/alphapose_0" + sub, {".txt"}, Keypoints()});
-  folders.push_back({root + "/alphapose_1" + sub, {".txt"}, Keypoints()});
+  folders.push_back({root + "/alphapose_0" + sub, {".txt"}, Keypoints() + kImport});
+  folders.push_back({root + "/alphapose_1" + sub, {".txt"}, Keypoints() + kImport});
   return folders;
 }
 
@@ -177,7 +180,7 @@ void FindOtherFiles(const std::string& folder, std::vector<UnreadFiles>* unread)
                          ending == ".yaml" || ending == ".yml" || ending == ".xml";
     if (!is_data) continue;
     if (ContainsAny(lower, {"keypoint", "alphapose", "openpose", "halpe", "skeleton"})) {
-      add("is not read; expected are alphapose_0 and alphapose_1 with " + Keypoints());
+      add("is not read; expected are alphapose_0 and alphapose_1 with " + Keypoints() + kImport);
     } else if (!has_times && ContainsAny(lower, {"time"})) {
       add("is not read; times are read from times.txt, one per line, in s");
     } else if (!has_truth && ContainsAny(lower, {"pose", "truth", "gt.", "gt_", "trajectory"})) {
@@ -225,7 +228,7 @@ std::string ExplainOtherLayout(const std::string& folder) {
   const std::string wanted =
       "image_0 and image_1 with rectified images, calib.json and times.txt are expected";
   if (has("mav0/cam0/data") || has("cam0/data")) {
-    return "this is EuRoC's layout, whose images are not rectified; " + wanted;
+    return "this is EuRoC's layout, but cam0/data and cam1/data are not both there";
   }
   if (has("image_00/data") || has("image_02/data")) {
     return "this is KITTI raw; make image_0 and image_1 from image_00/data and image_01/data, and "
@@ -269,6 +272,7 @@ std::vector<UnreadFiles> FindUnreadFiles(const std::string& folder) {
   std::vector<UnreadFiles> unread;
   for (const ReadFolder& read : ReadFolders(folder)) FindInReadFolder(read, &unread);
   if (IsKittiTrackingSequence(folder)) return unread;  // its neighbours are other sequences
+  if (IsEurocSequence(folder)) return unread;          // its neighbours are other sensors
   FindOtherFolders(folder, &unread);
   FindOtherFiles(folder, &unread);
   return unread;

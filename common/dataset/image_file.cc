@@ -79,37 +79,6 @@ int SignificantBits(const BitHistogram& histogram) {
   return bits;
 }
 
-/// The first and last bytes of a file, or all of it if these are not enough.
-SurveyedImage SurveyImage(const std::string& path, bool is_left) {
-  SurveyedImage image;
-  image.path = path;
-  image.is_left = is_left;
-  constexpr std::size_t kHeadBytes = 4096;
-  constexpr std::streamoff kTailBytes = 16;
-  std::ifstream file(path, std::ios::binary);
-  std::vector<std::uint8_t> head(kHeadBytes);
-  file.read(reinterpret_cast<char*>(head.data()), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
-  file.clear();
-  file.seekg(-kTailBytes, std::ios::end);
-  std::string tail(kTailBytes, '\0');
-  file.read(tail.data(), kTailBytes);
-  image.header = ReadImageHeader(head.data(), head.size());
-  const bool has_end = image.header && file && head.size() == kHeadBytes &&
-                       (image.header->is_png ? tail.find("IEND") != std::string::npos
-                                             : tail.find("\xFF\xD9") != std::string::npos);
-  if (has_end && WhyHeaderIsUnfit(*image.header).empty()) return image;
-  try {
-    const std::vector<std::uint8_t> bytes = ReadBytes(path);
-    image.header = ReadImageHeader(bytes.data(), bytes.size());
-    const std::string why = WhyNoPicture(bytes.data(), bytes.size());
-    if (!why.empty()) image.error = path + ": " + why;
-  } catch (const InputError& error) {
-    image.error = error.what();
-  }
-  return image;
-}
-
 }  // namespace
 
 std::string WhyNoPicture(const std::uint8_t* data, std::size_t size) {
@@ -130,19 +99,29 @@ std::optional<SixteenBitRange> FindSixteenBitRange(const StereoSequence& sequenc
   constexpr std::size_t kMaxPairs = 10;
   const std::size_t num_frames = sequence.num_frames();
   const std::size_t num_pairs = std::min(num_frames, kMaxPairs);
-  BitHistogram histogram = {};
-  bool has_any = false;
+  std::vector<std::string> paths;
   for (std::size_t i = 0; i < num_pairs; ++i) {
     const FrameFiles files =
         sequence.files(num_pairs == 1 ? 0 : i * (num_frames - 1) / (num_pairs - 1));
-    for (const std::string& path : {files.left_image, files.right_image}) {
-      try {
-        const std::vector<std::uint8_t> file = ReadBytes(path);
-        if (!HasSixteenBits(file) || IsCutShort(file.data(), file.size())) continue;
-        CountBits(Decode(file, path, cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH), &histogram);
-        has_any = true;
-      } catch (const InputError&) {  // reported when this picture is read
-      }
+    paths.push_back(files.left_image);
+    paths.push_back(files.right_image);
+  }
+  return FindSixteenBitRange(paths);
+}
+
+std::optional<SixteenBitRange> FindSixteenBitRange(const std::vector<std::string>& paths) {
+  constexpr std::size_t kMaxFiles = 20;
+  const std::size_t num_files = std::min(paths.size(), kMaxFiles);
+  BitHistogram histogram = {};
+  bool has_any = false;
+  for (std::size_t i = 0; i < num_files; ++i) {
+    const std::string& path = paths[num_files == 1 ? 0 : i * (paths.size() - 1) / (num_files - 1)];
+    try {
+      const std::vector<std::uint8_t> file = ReadBytes(path);
+      if (!HasSixteenBits(file) || IsCutShort(file.data(), file.size())) continue;
+      CountBits(Decode(file, path, cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH), &histogram);
+      has_any = true;
+    } catch (const InputError&) {  // reported when this picture is read
     }
   }
   if (!has_any) return std::nullopt;
@@ -178,6 +157,37 @@ Picture DecodePicture(const std::vector<std::uint8_t>& file, const std::string& 
   return picture;
 }
 
+/// The first and last bytes of a file, or all of it if these are not enough.
+SurveyedImage SurveyImage(const std::string& path, bool is_left) {
+  SurveyedImage image;
+  image.path = path;
+  image.is_left = is_left;
+  constexpr std::size_t kHeadBytes = 4096;
+  constexpr std::streamoff kTailBytes = 16;
+  std::ifstream file(path, std::ios::binary);
+  std::vector<std::uint8_t> head(kHeadBytes);
+  file.read(reinterpret_cast<char*>(head.data()), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  file.clear();
+  file.seekg(-kTailBytes, std::ios::end);
+  std::string tail(kTailBytes, '\0');
+  file.read(tail.data(), kTailBytes);
+  image.header = ReadImageHeader(head.data(), head.size());
+  const bool has_end = image.header && file && head.size() == kHeadBytes &&
+                       (image.header->is_png ? tail.find("IEND") != std::string::npos
+                                             : tail.find("\xFF\xD9") != std::string::npos);
+  if (has_end && WhyHeaderIsUnfit(*image.header).empty()) return image;
+  try {
+    const std::vector<std::uint8_t> bytes = ReadBytes(path);
+    image.header = ReadImageHeader(bytes.data(), bytes.size());
+    const std::string why = WhyNoPicture(bytes.data(), bytes.size());
+    if (!why.empty()) image.error = path + ": " + why;
+  } catch (const InputError& error) {
+    image.error = error.what();
+  }
+  return image;
+}
+
 std::vector<SurveyedImage> SurveyImages(const StereoSequence& sequence) {
   std::vector<SurveyedImage> images;
   for (std::size_t i = 0; i < sequence.num_frames(); ++i) {
@@ -200,6 +210,13 @@ std::string SizeMismatchText(std::int64_t width, std::int64_t height, const std:
   if (width == wanted_height && height == wanted_width) return text + ": turned by 90 degrees";
   if (std::abs(factor / factor_y - 1) > 0.02) return text + ": with another aspect ratio";
   return text + Format(": %.3g times as large", factor);
+}
+
+std::vector<std::uint8_t> EncodePng(const cv::Mat& pixels) {
+  std::vector<std::uint8_t> file;
+  constexpr int kFast = 1;
+  cv::imencode(".png", pixels, file, {cv::IMWRITE_PNG_COMPRESSION, kFast});
+  return file;
 }
 
 }  // namespace airdos

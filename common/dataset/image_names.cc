@@ -124,7 +124,8 @@ const Unit* UnitOf(const std::vector<std::uint64_t>& numbers) {
   for (const Unit& unit : kUnits) {
     const double first_s = static_cast<double>(numbers[0]) / unit.per_second;
     const double step_s = step / unit.per_second;
-    const bool is_date = first_s > kYear2000_s && first_s < kYear2100_s && step_s < 60;
+    const double last_s = static_cast<double>(numbers.back()) / unit.per_second;
+    const bool is_date = first_s > kYear2000_s && last_s < kYear2100_s && step_s < 60;
     const bool is_camera = step >= kMinStep && step_s >= 0.005 && step_s <= 1;
     if (numbers.size() > 1 && (is_date || is_camera)) return &unit;
   }
@@ -133,10 +134,17 @@ const Unit* UnitOf(const std::vector<std::uint64_t>& numbers) {
 
 }  // namespace
 
+std::vector<std::string> ListImageFiles(const std::string& folder) {
+  return ListFiles(folder, ImageEndings());
+}
+
 ImageNames ListImages(const std::string& folder) {
+  return OrderImages(folder, ListImageFiles(folder));
+}
+
+ImageNames OrderImages(const std::string& folder, std::vector<std::string> names) {
   ImageNames result;
   result.folder = folder;
-  std::vector<std::string> names = ListFiles(folder, ImageEndings());
   std::vector<std::string> strays = TakeHidden(&names);
   if (names.empty()) FailWithoutImages(folder);
   std::vector<NameSeries> groups = GroupNames(names);

@@ -31,6 +31,10 @@ struct ImageNames {
 /// of names so similar in size (none less than a quarter of the other) that it is unknown which one
 /// is meant.
 ImageNames ListImages(const std::string& folder);
+/// The same of some of the folder's files.
+ImageNames OrderImages(const std::string& folder, std::vector<std::string> names);
+/// The names of these files, in lexicographic order.
+std::vector<std::string> ListImageFiles(const std::string& folder);
 
 /// Throws InputError with both counts and the first names without a partner if the keys of left and
 /// right differ.

@@ -28,34 +28,6 @@ std::optional<KeypointLayout> LayoutOfCount(std::size_t count) {
   return std::nullopt;
 }
 
-/// What rows with this many numbers look like: ": ...", or empty.
-std::string ExplainCount(std::size_t count) {
-  static const std::map<std::size_t, std::string> kKnown = {
-      {75, "OpenPose's BODY_25: of its joints, 0-18 without 8 are COCO-18's"},
-      {50, "OpenPose's BODY_25 without confidences"},
-      {36, "COCO-18 without confidences"},
-      {34, "COCO-17 without confidences"},
-      {52, "Halpe-26 without confidences, or COCO-17 with an extra number"},
-      {408, "Halpe-136: of its joints, the first 26 are Halpe-26's"},
-      {399, "COCO-WholeBody: of its joints, the first 17 are COCO-17's"},
-      {411, "OpenPose's body, hands and face"},
-      {48, "MPII"},
-      {45, "OpenPose's MPI"},
-      {57, "COCO-18 with an extra joint"},
-      {96, "Human3.6M"},
-      {99, "BlazePose"},
-      {132, "BlazePose with four numbers per joint"},
-      {63, "a hand"},
-      {55, "COCO-18 with an extra number, an identity or a score"},
-      {79, "Halpe-26 with an extra number, an identity or a score"},
-      {56, "COCO-17 with a box of five numbers"},
-      {58, "COCO-18 with a box of four numbers"},
-      {3, "one joint per line"},
-      {2, "one joint per line, without confidence"}};
-  const auto known = kKnown.find(count);
-  return known == kKnown.end() ? "" : ": this looks like " + known->second;
-}
-
 std::vector<double> ParseRow(const std::string& path, const TextLine& line) {
   try {
     return ParseNumbers(path, line, 0);
@@ -79,6 +51,34 @@ std::size_t CountFirstRow(const std::string& path) {
 
 }  // namespace
 
+std::string ExplainKeypointCount(std::size_t count) {
+  static const std::map<std::size_t, std::string> kKnown = {
+      {75, "OpenPose's BODY_25: of its joints, 0-18 without 8 are COCO-18's"},
+      {50, "OpenPose's BODY_25 without confidences"},
+      {36, "COCO-18 without confidences"},
+      {34, "COCO-17 without confidences"},
+      {52, "Halpe-26 without confidences, or COCO-17 with an extra number"},
+      {408, "Halpe-136: of its joints, the first 26 are Halpe-26's"},
+      {399, "COCO-WholeBody: of its joints, the first 17 are COCO-17's"},
+      {411, "OpenPose's body, hands and face"},
+      {42, "CrowdPose"},
+      {48, "MPII"},
+      {45, "OpenPose's MPI"},
+      {57, "COCO-18 with an extra joint"},
+      {96, "Human3.6M"},
+      {99, "BlazePose"},
+      {132, "BlazePose with four numbers per joint"},
+      {63, "a hand"},
+      {55, "COCO-18 with an extra number, an identity or a score"},
+      {79, "Halpe-26 with an extra number, an identity or a score"},
+      {56, "COCO-17 with a box of five numbers"},
+      {58, "COCO-18 with a box of four numbers"},
+      {3, "one joint per line"},
+      {2, "one joint per line, without confidence"}};
+  const auto known = kKnown.find(count);
+  return known == kKnown.end() ? "" : ": this looks like " + known->second;
+}
+
 std::string NameOf(KeypointLayout layout) {
   switch (layout) {
     case KeypointLayout::kCoco17:
@@ -100,7 +100,7 @@ KeypointFile ReadRawKeypoints(const std::string& path) {
     const std::string where = path + ":" + std::to_string(line.number) + ": ";
     if (!layout) {
       throw InputError(where + "holds " + std::to_string(numbers.size()) + " numbers" +
-                       ExplainCount(numbers.size()) + "; " + kLayoutsRead);
+                       ExplainKeypointCount(numbers.size()) + "; " + kLayoutsRead);
     }
     if (file.layout && file.layout != layout) {
       throw InputError(where + "holds a person in " + NameOf(*layout) +

@@ -1,6 +1,7 @@
 #ifndef AIRDOS_COMMON_DATASET_KEYPOINT_FILE_H_
 #define AIRDOS_COMMON_DATASET_KEYPOINT_FILE_H_
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,9 @@ std::optional<KeypointLayout> FindLayout(const std::vector<std::string>& paths);
 
 /// The layout's name, such as "COCO-18".
 std::string NameOf(KeypointLayout layout);
+
+/// What people with this many numbers each look like: ": this looks like ...", or empty.
+std::string ExplainKeypointCount(std::size_t count);
 
 }  // namespace airdos
 

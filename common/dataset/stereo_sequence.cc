@@ -5,6 +5,7 @@
 #include "common/dataset/folder_survey.h"
 #include "common/dataset/kitti_sequence.h"
 #include "common/dataset/kitti_tracking_sequence.h"
+#include "common/dataset/recording/euroc_sequence.h"
 #include "common/dataset/shibuya_sequence.h"
 #include "common/util/error.h"
 
@@ -13,14 +14,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Layout { kNone, kKittiTracking, kKittiOdometry, kShibuya };
+enum class Layout { kNone, kKittiTracking, kKittiOdometry, kShibuya, kEuroc };
 
 Layout FindLayout(const std::string& folder) {
   if (IsKittiTrackingSequence(folder)) return Layout::kKittiTracking;
   if (fs::exists(folder + "/calib.txt")) return Layout::kKittiOdometry;
   const bool has_images =
       fs::is_directory(folder + "/image_0") && fs::is_directory(folder + "/image_1");
-  return has_images ? Layout::kShibuya : Layout::kNone;
+  if (has_images) return Layout::kShibuya;
+  return IsEurocSequence(folder) ? Layout::kEuroc : Layout::kNone;
 }
 
 void CheckCalibrationName(const std::string& folder, Layout layout, const std::string& name) {
@@ -50,6 +52,7 @@ std::unique_ptr<StereoSequence> OpenStereoSequence(const std::string& given,
   CheckCalibrationName(folder, layout, options.calibration);
   if (layout == Layout::kKittiTracking) return OpenKittiTrackingSequence(folder);
   if (layout == Layout::kKittiOdometry) return OpenKittiSequence(folder);
+  if (layout == Layout::kEuroc) return OpenEurocSequence(folder);
   return OpenShibuyaSequence(folder, options);
 }
 

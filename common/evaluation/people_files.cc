@@ -60,6 +60,18 @@ std::optional<int> CountVisible(const json& human, const char* key) {
   return count;
 }
 
+/// Of the joints of our body model.
+std::set<int> FindVisible(const json& human, const char* key) {
+  std::set<int> visible;
+  if (!human.contains(key)) return visible;
+  int joint = 0;
+  for (const json& visibility : human.at(key)) {
+    if (joint < kNumJoints && visibility.get<double>() > 0) visible.insert(joint);
+    ++joint;
+  }
+  return visible;
+}
+
 }  // namespace
 
 std::vector<PersonState> ReadPeople(const std::string& path) {
@@ -102,6 +114,8 @@ std::vector<TruePeople> ReadTruePeople(const std::string& path) {
         person.joints = ParseJoints(human.at("joints_w"));
         person.num_visible_left = CountVisible(human, "vis0");
         person.num_visible_right = CountVisible(human, "vis1");
+        person.visible_left = FindVisible(human, "vis0");
+        person.visible_right = FindVisible(human, "vis1");
       }
       frames.push_back(std::move(frame));
     }

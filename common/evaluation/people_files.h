@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct TruePersonState {
   /// not tell.
   std::optional<int> num_visible_left;
   std::optional<int> num_visible_right;
+  std::set<int> visible_left{};  ///< which of `joints` these are; empty if the file does not tell
+  std::set<int> visible_right{};
 };
 
 /// The true people in one frame, by identity.

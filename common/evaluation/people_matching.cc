@@ -11,14 +11,13 @@
 namespace airdos {
 namespace {
 
-constexpr double kMaxDistance = 0.15;       // relative to the height
 constexpr double kMaxJointDistance = 0.25;  // limits the influence of outliers
 constexpr double kMinJointDepthM = 0.2;
 
-/// Mean distance between the directions of shared joints, in heights of the true person; infinite
-/// if there are none.
-double Distance(const Joints& measured_C, const Joints& truth_C, double true_depth_m,
-                SideSwap swap) {
+}  // namespace
+
+double ImageDistance(const Joints& measured_C, const Joints& truth_C, SideSwap swap) {
+  const double true_depth_m = MiddleDepth(truth_C);
   double sum = 0;
   int num = 0;
   for (const auto& [joint, p_C] : measured_C) {
@@ -32,8 +31,6 @@ double Distance(const Joints& measured_C, const Joints& truth_C, double true_dep
   }
   return num > 0 ? sum / num : std::numeric_limits<double>::infinity();
 }
-
-}  // namespace
 
 double MiddleDepth(const Joints& joints_C) {
   std::vector<double> depths_m;
@@ -65,12 +62,11 @@ std::map<std::size_t, std::int64_t> MatchPeople(const std::vector<Joints>& measu
   for (const auto& [identity, joints_C] : truth_C) {
     const auto column = static_cast<Eigen::Index>(identities.size());
     identities.push_back(identity);
-    const double depth_m = MiddleDepth(joints_C);
-    if (depth_m < kMinPersonDepthM) continue;
+    if (MiddleDepth(joints_C) < kMinPersonDepthM) continue;
     for (std::size_t i = 0; i < measured_C.size(); ++i) {
-      const double distance = std::min(Distance(measured_C[i], joints_C, depth_m, SideSwap::kNone),
-                                       Distance(measured_C[i], joints_C, depth_m, SideSwap::kAll));
-      if (distance < kMaxDistance) cost(static_cast<Eigen::Index>(i), column) = distance;
+      const double distance = std::min(ImageDistance(measured_C[i], joints_C, SideSwap::kNone),
+                                       ImageDistance(measured_C[i], joints_C, SideSwap::kAll));
+      if (distance < kMaxImageDistance) cost(static_cast<Eigen::Index>(i), column) = distance;
     }
   }
   std::map<std::size_t, std::int64_t> matches;

@@ -23,8 +23,6 @@ std::optional<std::size_t> FindCamera(const MatchedTrajectories& cameras, double
   return std::nullopt;
 }
 
-std::size_t DepthBand(double depth_m) { return depth_m < 6 ? 0 : depth_m < 12 ? 1 : 2; }
-
 /// Lists of joint errors (m) before and after the optimization.
 struct JointErrorLists {
   std::vector<double> measured_m;
@@ -175,6 +173,8 @@ double ImprovementPercent(double before, double after) {
 }
 
 }  // namespace
+
+std::size_t DepthBand(double depth_m) { return depth_m < 6 ? 0 : depth_m < 12 ? 1 : 2; }
 
 double JointErrors::mean_improvement_percent() const {
   return ImprovementPercent(measured.mean, optimized.mean);

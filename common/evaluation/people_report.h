@@ -34,6 +34,7 @@ struct LengthErrors {
 constexpr std::size_t kNumDepthBands = 3;
 constexpr std::array<const char*, kNumDepthBands> kDepthBandNames = {"below 6 m", "6 to 12 m",
                                                                      "from 12 m"};
+std::size_t DepthBand(double depth_m);  ///< index of the band
 
 /// A track's lengths count once it has been on the same person for this many frames.
 constexpr int kMinFramesForLengths = 10;

@@ -3,8 +3,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 #include "common/util/error.h"
@@ -31,9 +33,17 @@ std::string ReadWholeFile(const std::string& path, std::size_t max_bytes) {
   RequireRegularFile(path);
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path + ": cannot be read");
-  std::string text(max_bytes + 1, '\0');  // one more tells whether there are too many
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
+  std::error_code error;
+  const auto said = std::filesystem::file_size(path, error);  // some files say 0, and may grow
+  constexpr std::size_t kLeast = 4096;
+  const std::size_t likely = error ? kLeast : static_cast<std::size_t>(said) + 1;
+  std::string text;
+  while (file && text.size() <= max_bytes) {  // one more tells whether there are too many
+    const std::size_t at = text.size();
+    text.resize(std::min(max_bytes + 1, std::max({kLeast, likely, 2 * at})));
+    file.read(text.data() + at, static_cast<std::streamsize>(text.size() - at));
+    text.resize(at + static_cast<std::size_t>(file.gcount()));
+  }
   if (text.size() > max_bytes) {
     throw InputError(path + ": holds more than " + std::to_string(max_bytes) + " bytes");
   }

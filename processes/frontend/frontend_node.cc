@@ -1,10 +1,12 @@
 #include "processes/frontend/frontend_node.h"
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "common/human/body_mask.h"
 #include "processes/frontend/frontend_messages.h"
+#include "processes/node/message/figures.h"
 #include "processes/node/message/header.h"
 #include "processes/node/message/image_codec.h"
 #include "processes/node/message/keypoint_messages.h"
@@ -131,7 +133,7 @@ std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
   constexpr std::int64_t kMaxApart_us = 20000;
   const bool is_pair = has_right && inputs.right->utime <= inputs.left->utime + kMaxApart_us &&
                        inputs.left->utime <= inputs.right->utime + kMaxApart_us;
-  if (is_pair) watches_.input.AddPair(*left, *right);
+  if (is_pair) WatchPair(*left, *right);
   // A blank right image has no corners, so landmarks are tracked in the left image only.
   if (!has_right) right = cv::Mat::zeros(left->size(), CV_8UC1);
   return StereoImagePair{
@@ -141,6 +143,14 @@ std::optional<StereoImagePair> FrontendNode::Images(const Header& header,
       *right,
       Mask(inputs),
       inputs.humans ? ToHumanMeasurements(*inputs.humans) : std::vector<HumanMeasurement>()};
+}
+
+void FrontendNode::WatchPair(const cv::Mat& left, const cv::Mat& right) {
+  watches_.input.AddPair(left, right);
+  const std::optional<double> row_error_px = watches_.input.row_error_px();
+  if (row_error_px) {
+    counters(figure::kRowError_millipx).num_received = std::llround(1e3 * *row_error_px);
+  }
 }
 
 void FrontendNode::WatchNumbers(const FrontendInputs& inputs) {

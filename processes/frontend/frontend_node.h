@@ -68,6 +68,7 @@ class FrontendNode : public FrameNode<FrontendInputs> {
   /// Where people are, from masks or otherwise from keypoints; empty if there is neither.
   cv::Mat Mask(const FrontendInputs& inputs);
   std::optional<StereoImagePair> Images(const Header& header, const FrontendInputs& inputs);
+  void WatchPair(const cv::Mat& left, const cv::Mat& right);
   void WatchNumbers(const FrontendInputs& inputs);
 
   const FrontendOptions options_;

@@ -4,20 +4,15 @@
 #include <utility>
 
 #include "common/check/check_findings.h"
-#include "common/check/stereo_matches.h"
 #include "common/util/quantile.h"
 
 namespace airdos {
 namespace {
 
-// Measuring a pair takes about half as long as tracking a frame.
-constexpr int kMaxCorners = 300;
-constexpr int kFirstMeasured = 3;  // of the first ten pairs, if they have corners
-constexpr int kMeasureEvery = 100;
-
-constexpr double kNotRectified_px = 1.5;  // the frontend's search range for a corner around its row
-constexpr double kBadlyRectified_px = 0.6;
-constexpr double kMinExchanged = 0.7;  // share of negative disparities
+// Whoever publishes the images has to rectify them; ours can.
+constexpr char kHowToRectify[] =
+    "give the calibration to what plays or captures them: airdos-stereo-player --images LEFT RIGHT "
+    "--calibration FILE";
 
 constexpr double kMaxCoverage = 0.9;
 constexpr int kMinJoints = 50;
@@ -30,15 +25,15 @@ constexpr double kMaxPeriod_s = 2;
 constexpr double kMinUsualPeriod_s = 0.005;
 constexpr double kMaxUsualPeriod_s = 1;
 
-/// Two of the last three measured pairs must agree: a single one may show nothing but water, or
-/// date from before the camera moved.
-double MiddleOfLastThree(const std::vector<double>& values) {
-  return Quantile({values.end() - kFirstMeasured, values.end()}, 0.5);
-}
-
 }  // namespace
 
-std::vector<std::string> InputWatch::TakeWarnings() { return std::exchange(warnings_, {}); }
+InputWatch::InputWatch() : rows_(kHowToRectify) {}
+
+std::vector<std::string> InputWatch::TakeWarnings() {
+  std::vector<std::string> warnings = std::exchange(warnings_, {});
+  for (std::string& warning : rows_.TakeWarnings()) warnings.push_back(std::move(warning));
+  return warnings;
+}
 
 void InputWatch::AddTime(std::int64_t utime) {
   if (are_times_judged_) return;
@@ -71,34 +66,7 @@ void InputWatch::JudgeTimes() {
 }
 
 void InputWatch::AddPair(const cv::Mat& left, const cv::Mat& right) {
-  ++num_pairs_;
-  const bool is_first = num_measured_ < kFirstMeasured && num_pairs_ <= LookSchedule::kFirstLook &&
-                        num_pairs_ % 2 == 1;
-  if (!is_first && num_pairs_ % kMeasureEvery != 0) return;
-  const std::optional<RowError> error = MeasureRowError(left, right, kMaxCorners);
-  if (!error) return;
-  ++num_measured_;
-  row_errors_px_.push_back(error->median_px);
-  negative_shares_.push_back(error->share_negative);
-  if (num_measured_ >= kFirstMeasured) JudgePairs();
-}
-
-void InputWatch::JudgePairs() {
-  const double error_px = MiddleOfLastThree(row_errors_px_);
-  const double share_negative = MiddleOfLastThree(negative_shares_);
-  row_errors_px_.erase(row_errors_px_.begin());
-  negative_shares_.erase(negative_shares_.begin());
-  if (!is_exchange_said_ && share_negative > kMinExchanged) {
-    is_exchange_said_ = true;
-    warnings_.push_back("left and right images are exchanged: " + Percent(share_negative) +
-                        " of the matches have a negative disparity; no static feature will be "
-                        "found until they are swapped");
-  }
-  if (are_rows_said_ || error_px <= kBadlyRectified_px) return;
-  are_rows_said_ = true;
-  const std::string how = error_px > kNotRectified_px ? "are not rectified" : "are badly rectified";
-  warnings_.push_back("the images " + how + ": rows of matches differ by " + Brief(error_px) +
-                      " px (median); airdos-check LOG|FOLDER reports more");
+  if (rows_.IsDue()) rows_.Add(left, right);
 }
 
 void InputWatch::AddMask(const cv::Mat& mask, const std::vector<BodyKeypoints>& people) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/check/row_watch.h"
 #include "common/human/body_keypoints.h"
 #include "processes/node/partner_watch.h"
 
@@ -17,6 +18,7 @@ namespace airdos {
 /// each problem once. Cheap: apart from a few frames, it only counts.
 class InputWatch {
  public:
+  InputWatch();
   /// Adds a frame that has its left image, taken at `utime`.
   void AddTime(std::int64_t utime);
   /// Adds both images, CV_8UC1 and of equal size.
@@ -24,12 +26,13 @@ class InputWatch {
   /// Adds the mask of a left image as received (non-zero = person), and the people in it, if known.
   void AddMask(const cv::Mat& mask, const std::vector<BodyKeypoints>& people);
 
+  /// See RowWatch.
+  std::optional<double> row_error_px() const { return rows_.error_px(); }
   /// Warnings since the last call.
   std::vector<std::string> TakeWarnings();
 
  private:
   void JudgeTimes();
-  void JudgePairs();
   void JudgeMasks();
 
   std::vector<std::string> warnings_;
@@ -39,12 +42,7 @@ class InputWatch {
   std::vector<double> steps_us_;  // between the first images
   bool are_times_judged_ = false;
 
-  int num_pairs_ = 0;
-  int num_measured_ = 0;
-  std::vector<double> row_errors_px_;    // one per measured pair
-  std::vector<double> negative_shares_;  // share of negative disparities, one per measured pair
-  bool are_rows_said_ = false;
-  bool is_exchange_said_ = false;
+  RowWatch rows_;
 
   LookSchedule mask_schedule_;
   std::vector<double> coverages_;  // since the last judgement

@@ -122,6 +122,10 @@ CommandOption CommandOption::ShownAs(const std::string& what) const {
   return CommandOption(option_->type_name(what));
 }
 
+CommandOption CommandOption::Excludes(const std::string& name) const {
+  return CommandOption(option_->excludes(name));
+}
+
 CommandOption CommandOption::Within(int low, int high) const {
   return CommandOption(option_->check(CLI::Range(low, high)));
 }
@@ -243,6 +247,7 @@ AIRDOS_ADD(double);
 AIRDOS_ADD(std::string);
 AIRDOS_ADD(std::vector<std::string>);
 AIRDOS_ADD(std::optional<int>);
+AIRDOS_ADD(std::optional<double>);
 AIRDOS_ADD(std::optional<std::int64_t>);
 AIRDOS_ADD(std::optional<std::string>);
 #undef AIRDOS_ADD

@@ -31,6 +31,9 @@ class CommandOption {
   /// What --help shows in place of the type, such as WIDTHxHEIGHT.
   CommandOption ShownAs(const std::string& what) const;
 
+  /// Not together with that option.
+  CommandOption Excludes(const std::string& name) const;
+
   // What is allowed; anything else is an error.
   CommandOption Within(int low, int high) const;
   CommandOption Within(double low, double high) const;

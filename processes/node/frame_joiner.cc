@@ -90,10 +90,11 @@ std::optional<FrameJoiner::Frame> FrameJoiner::Oldest() const {
   return frame;
 }
 
-std::optional<FrameJoiner::Key> FrameJoiner::NewestComplete() const {
+std::optional<FrameJoiner::Key> FrameJoiner::NewestComplete(int num_newer) const {
   for (auto it = pending_.rbegin(); it != pending_.rend(); ++it) {
     const std::vector<bool>& arrived = it->second.arrived;
-    if (std::find(arrived.begin(), arrived.end(), false) == arrived.end()) return it->first;
+    if (std::find(arrived.begin(), arrived.end(), false) != arrived.end()) continue;
+    if (num_newer-- == 0) return it->first;
   }
   return std::nullopt;
 }

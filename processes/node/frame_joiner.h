@@ -59,8 +59,9 @@ class FrameJoiner {
   Arrival Announce(int input, const Header& header, Key* key);
   /// The oldest frame that is not done, if any.
   std::optional<Frame> Oldest() const;
-  /// The newest frame that has all its inputs, if any.
-  std::optional<Key> NewestComplete() const;
+  /// The newest frame that has all its inputs, but for the `num_newer` newest ones that have, if
+  /// any.
+  std::optional<Key> NewestComplete(int num_newer = 0) const;
   /// Marks the oldest frame as done; sets `num_skipped` to the number of image numbers between it
   /// and the previous frame that never came.
   void FinishOldest(std::int64_t* num_skipped);

@@ -70,7 +70,7 @@ class FrameNode : public Node {
   }
 
   void SkipToNewest() override {
-    const std::optional<FrameJoiner::Key> newest = Joiner().NewestComplete();
+    const std::optional<FrameJoiner::Key> newest = Joiner().NewestComplete(max_behind_);
     while ((newest && Joiner().Oldest()->key < *newest) || IsOverfull()) {
       DropInputs(Joiner().Oldest()->key);
       std::int64_t num_absent = 0;
@@ -126,6 +126,10 @@ class FrameNode : public Node {
       return Arrived(input, header, [&](Inputs& inputs) { inputs.*field = std::move(parts); });
     });
   }
+
+  /// Realtime pace: how many newer complete frames may wait while one is worked on, before any is
+  /// skipped. For nodes whose frames take turns in being slow and fast.
+  void SetMaxBehind(int num_frames) { max_behind_ = num_frames; }
 
   /// Frames wait for the calibration of their session; ProcessFrame() then finds it in camera().
   /// The first calibration of a session applies to the whole session, including earlier frames: if
@@ -306,6 +310,7 @@ class FrameNode : public Node {
   std::unique_ptr<FrameJoiner> joiner_;
   std::map<FrameJoiner::Key, Slot> inputs_;
   std::size_t num_pending_bytes_ = 0;
+  int max_behind_ = 0;
   bool needs_calibration_ = false;
   std::map<std::int64_t, StereoCamera> calibrations_;  // keyed by session
   std::deque<std::int64_t> calibrated_;                // their sessions, oldest first

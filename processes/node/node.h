@@ -69,8 +69,8 @@ class Node {
   /// Processes the oldest frame without the inputs that it still lacks: after a deadline, or at the
   /// end of a log. Returns false if no frame is waiting.
   virtual bool CompleteOldest() = 0;
-  /// For realtime pace: drops (and counts) the frames older than the newest complete one, and the
-  /// oldest if too many are waiting.
+  /// For realtime pace: drops (and counts) the frames older than the newest complete one, but for
+  /// as many as may wait, and the oldest if too many are waiting.
   virtual void SkipToNewest() = 0;
   /// Channels that the oldest waiting frame lacks and may still receive, separated by spaces; empty
   /// if no frame is waiting.

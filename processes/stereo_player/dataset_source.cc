@@ -10,14 +10,20 @@ namespace airdos {
 DatasetSource::DatasetSource(const std::string& folder, std::int64_t first, std::int64_t last,
                              std::int64_t session, const ImagePackerOptions& options,
                              const std::string& calibration)
-    : sequence_(OpenStereoSequence(folder, {calibration})),
+    : DatasetSource(OpenStereoSequence(folder, {calibration}), folder, first, last, session,
+                    options) {}
+
+DatasetSource::DatasetSource(std::unique_ptr<StereoSequence> sequence, const std::string& name,
+                             std::int64_t first, std::int64_t last, std::int64_t session,
+                             const ImagePackerOptions& options)
+    : sequence_(std::move(sequence)),
       player_(sequence_.get(), session, options),
       assumed_(sequence_->notes()) {
   const auto newest = static_cast<std::int64_t>(sequence_->num_frames()) - 1;
   const std::int64_t from = std::max<std::int64_t>(0, first);
   const std::int64_t to = std::min(last, newest);
   if (from > to) {
-    throw InputError(folder + ": has frames 0 to " + std::to_string(newest) +
+    throw InputError(name + ": has frames 0 to " + std::to_string(newest) +
                      ", so there is none from --first to --last");
   }
   first_ = static_cast<std::size_t>(from);
@@ -26,8 +32,11 @@ DatasetSource::DatasetSource(const std::string& folder, std::int64_t first, std:
 }
 
 std::vector<Envelope> DatasetSource::NextFrame() {
-  if (next_ == end_) return {};
-  return player_.Load(next_++).messages;
+  while (next_ != end_) {
+    std::vector<Envelope> messages = player_.Load(next_++).messages;
+    if (!messages.empty()) return messages;
+  }
+  return {};
 }
 
 std::vector<std::string> DatasetSource::TakeNotes() {

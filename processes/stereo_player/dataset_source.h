@@ -22,6 +22,10 @@ class DatasetSource : public FrameSource {
   DatasetSource(const std::string& folder, std::int64_t first, std::int64_t last,
                 std::int64_t session, const ImagePackerOptions& options,
                 const std::string& calibration = "");
+  /// The same of a sequence that is open; `name` stands for it in messages.
+  DatasetSource(std::unique_ptr<StereoSequence> sequence, const std::string& name,
+                std::int64_t first, std::int64_t last, std::int64_t session,
+                const ImagePackerOptions& options);
 
   std::vector<Envelope> NextFrame() override;
   double fraction_done() const override;

@@ -70,6 +70,17 @@ bool ImagePacker::PackUnchanged(const std::vector<std::uint8_t>& file, image_t* 
   return false;
 }
 
+/// Whether it fits is only tried where it may: images of a scene shrink to about half as PNG, and
+/// to compress them costs more than all else that is done with them.
+bool ImagePacker::PackSmall(const cv::Mat& pixels, image_t* message) {
+  const std::size_t num_bytes = pixels.total() * pixels.elemSize();
+  if (options_.encoding != ImagePackerOptions::Encoding::kAuto ||
+      num_bytes / 2 > static_cast<std::size_t>(options_.max_image_bytes)) {
+    return false;
+  }
+  return PackUnchanged(EncodePng(pixels), message);
+}
+
 void ImagePacker::PackPng(const cv::Mat& image, image_t* message) {
   std::vector<std::uint8_t> bytes;
   cv::imencode(".png", image, bytes);
@@ -99,9 +110,19 @@ void ImagePacker::Pack(const std::vector<std::uint8_t>& file, const std::string&
   message->width = picture.pixels.cols;
   message->height = picture.pixels.rows;
   if (header.bits != 16 && PackUnchanged(file, message)) return;
+  PackDecoded(picture.pixels, name, message);
+}
+
+void ImagePacker::Pack(const cv::Mat& pixels, const std::string& name, image_t* message) {
+  message->width = pixels.cols;
+  message->height = pixels.rows;
+  if (!PackSmall(pixels, message)) PackDecoded(pixels, name, message);
+}
+
+void ImagePacker::PackDecoded(const cv::Mat& pixels, const std::string& name, image_t* message) {
   if (options_.encoding == ImagePackerOptions::Encoding::kPng) {
-    PackPng(picture.pixels, message);
-  } else if (!PackJpeg(picture.pixels, message)) {
+    PackPng(pixels, message);
+  } else if (!PackJpeg(pixels, message)) {
     throw InputError(name + ": does not fit into " + std::to_string(options_.max_image_bytes) +
                      " bytes at any of the JPEG qualities");
   }

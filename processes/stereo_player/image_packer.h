@@ -38,6 +38,10 @@ class ImagePacker {
   /// it fit.
   void Pack(const std::vector<std::uint8_t>& file, const std::string& name, image_t* message);
 
+  /// The same for pixels, CV_8UC1 or CV_8UC3 (BGR). kAuto: PNG where it fits, as a file of these
+  /// pixels would travel.
+  void Pack(const cv::Mat& pixels, const std::string& name, image_t* message);
+
   /// What the user should know about the images packed so far, one line each; each returned once.
   std::vector<std::string> TakeNotes();
 
@@ -47,8 +51,10 @@ class ImagePacker {
   void NoteLarge();
   void NotePixels(const ImageHeader& header, const Picture& picture, const std::string& name);
   bool PackUnchanged(const std::vector<std::uint8_t>& file, image_t* message);
+  bool PackSmall(const cv::Mat& pixels, image_t* message);
+  void PackDecoded(const cv::Mat& pixels, const std::string& name, image_t* message);
   void PackPng(const cv::Mat& image, image_t* message);
-  bool PackJpeg(const cv::Mat& image, image_t* message);
+  bool PackJpeg(const cv::Mat& image, image_t* message);  ///< false if none fits
 
   ImagePackerOptions options_;
   SixteenBitRange range_;

@@ -12,6 +12,7 @@
 #include "processes/node/live/process_usage.h"
 #include "processes/node/log/event_log.h"
 #include "processes/node/log/looped_source.h"
+#include "processes/node/log/partial_source.h"
 #include "processes/node/message/channels.h"
 #include "processes/stereo_player/dataset_source.h"
 
@@ -50,6 +51,12 @@ LcmTransport::Handler HandlerOf(Handle handle) {
 }  // namespace
 
 std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std::int64_t session) {
+  if (!options.without.empty()) {
+    PlayerOptions whole = options;
+    whole.without.clear();
+    return std::make_unique<PartialSource>(OpenPlayerSource(whole, session),
+                                           ChannelsOfPeople("--without", options.without));
+  }
   if (options.is_one_session) {
     PlayerOptions once = options;
     once.is_one_session = false;
@@ -58,6 +65,10 @@ std::unique_ptr<FrameSource> OpenPlayerSource(const PlayerOptions& options, std:
                                           options.num_loops);
   }
   const std::int64_t last = options.last.value_or(std::numeric_limits<std::int64_t>::max());
+  if (options.recording.is_given()) {
+    return std::make_unique<DatasetSource>(options.recording.Open(), options.recording.name(),
+                                           options.first, last, session, options.image);
+  }
   if (std::filesystem::is_directory(options.data)) {
     return std::make_unique<DatasetSource>(options.data, options.first, last, session,
                                            options.image, options.check.calibration);
@@ -98,6 +109,7 @@ void PlayerLoop::Run() {
   transport_->Subscribe(channel::kStatus,
                         HandlerOf<process_status_t>([this](const process_status_t& status) {
                           gate_.OnStatus(status, SteadyClock_s());
+                          if (options_.pace == PlayerPace::kRealtime) lag_.OnStatus(status);
                         }));
   transport_->Subscribe(channel::kFrameDone,
                         HandlerOf<frame_done_t>([this](const frame_done_t& done) {
@@ -157,7 +169,8 @@ void PlayerLoop::WaitForTime(const Header& header) {
     }
     gap_s = 0;
   }
-  pace_ = {pace_->first + gap_s / options_.rate, header.utime};
+  pace_ = {pace_->first + gap_s / options_.speed, header.utime};
+  Listen(0);  // also where it is late
   for (double left_s = pace_->first - SteadyClock_s(); left_s > 0 && !StopRequested();
        left_s = pace_->first - SteadyClock_s()) {
     Listen(std::min(kPollTimeout_ms, static_cast<int>(1e3 * std::min(left_s, 1.0)) + 1));
@@ -187,6 +200,7 @@ void PlayerLoop::PublishFrame(const std::vector<Envelope>& messages, const Heade
   }
   TellService();
   gate_.OnPublished(header.session, header.seq, SteadyClock_s());
+  lag_.OnPublished(header);
   ++num_published_;
   if (options_.say_every > 0 && num_published_ % options_.say_every == 0)
     log_->Info(std::to_string(num_published_) + " frames published");
@@ -206,6 +220,7 @@ void PlayerLoop::TellService() {
 
 void PlayerLoop::SayNotes(FrameSource* source) {
   for (const std::string& note : gate_.TakeNotes()) log_->Relay(note);
+  for (const std::string& note : lag_.TakeNotes()) log_->Relay(note);
   if (source == nullptr) return;
   for (const std::string& note : source->TakeNotes()) log_->Relay(note);
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "processes/node/live/lag_watch.h"
 #include "processes/node/live/lcm_transport.h"
 #include "processes/node/live/process_log.h"
 #include "processes/node/live/service_notifier.h"
@@ -64,6 +65,7 @@ class PlayerLoop {
   const ProcessLog* log_;
   ServiceNotifier service_;
   LockstepGate gate_;
+  LagWatch lag_;                         // of realtime pace; in lock-step nobody falls behind
   std::optional<Envelope> calibration_;  // the last one, for processes that start later
   // Realtime pace: when the previous frame was due on our clock, and its capture time.
   std::optional<std::pair<double, std::int64_t>> pace_;

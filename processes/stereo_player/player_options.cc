@@ -3,6 +3,7 @@
 #include "common/config/option_pages.h"
 #include "common/util/error.h"
 #include "common/util/words.h"
+#include "processes/node/log/partial_source.h"
 
 namespace airdos {
 
@@ -37,12 +38,13 @@ PlayerArguments::PlayerArguments(CommandLine* app) : input_(app) {
       .NotNegative();
   app->AddFlag("--one-session", &options_.is_one_session,
                "With --loop: one long session, its times and image numbers go on");
+  options_.recording.AddTo(app);
   AddInputCheckOptions(app, &options_.check);
   app->Add("--say-every", &options_.say_every, "Say how far it is every N frames").NotNegative();
   app->Add("--pace", &pace_, "lockstep: nothing is ever lost; realtime: like cameras")
       .ShowDefault()
       .OneOf({"lockstep", "realtime"});
-  app->Add("--rate", &options_.rate, "realtime: speed relative to the recording")
+  app->Add("--speed", &options_.speed, "realtime: speed relative to the recording")
       .ShowDefault()
       .Within(1e-3, 1e3);
   app->Add("--wait-for", &wait_for_,
@@ -53,6 +55,9 @@ PlayerArguments::PlayerArguments(CommandLine* app) : input_(app) {
            "auto: files that fit unchanged, else JPEG; png: lossless, whatever the size")
       .ShowDefault()
       .OneOf({"auto", "jpeg", "png"});
+  app->Add("--without", &without_,
+           "keypoints, masks or both, separated by commas: leave these channels to "
+           "airdos-person-detector");
   app->AddFile("--write-log", &options_.write_log,
                "Write an LCM log of exactly these messages instead of publishing them");
 }
@@ -60,7 +65,10 @@ PlayerArguments::PlayerArguments(CommandLine* app) : input_(app) {
 PlayerOptions PlayerArguments::Resolve() const {
   using Encoding = ImagePackerOptions::Encoding;
   PlayerOptions options = options_;
-  options.data = input_.path();
+  InputOptions input = input_;
+  options.recording.Settle(&input);
+  if (!options.recording.is_given()) options.data = input.path();
+  options.check.calibration = options.recording.named_calibration();
   if (options.is_one_session && options.num_loops == 0)
     throw InputError("--one-session needs a --loop that ends");
   if (!options.write_log.empty() && options.num_loops != 1 && !options.is_one_session)
@@ -72,6 +80,8 @@ PlayerOptions PlayerArguments::Resolve() const {
   ConfigReader config = ReadConfig(common_);
   TableOf(&options).Read(&config);
   FinishConfig(config, common_);
+  options.without = SplitAtCommas(without_);
+  ChannelsOfPeople("--without", options.without);  // or one of them is none
   if (wait_for_) options.gate.wait_for = SplitAtCommas(*wait_for_ == "none" ? "" : *wait_for_);
   if (frames_in_flight_) options.gate.frames_in_flight = *frames_in_flight_;
   return options;

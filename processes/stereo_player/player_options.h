@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/config/option_table.h"
 #include "processes/node/check/input_check.h"
 #include "processes/node/live/process_cli.h"
+#include "processes/node/live/recording_cli.h"
 #include "processes/stereo_player/image_packer.h"
 #include "processes/stereo_player/lockstep_gate.h"
 
@@ -19,7 +21,8 @@ enum class PlayerPace { kLockstep, kRealtime };
 
 /// What the player is asked to do.
 struct PlayerOptions {
-  std::string data;  ///< folder of a data set, or LCM log
+  std::string data;  ///< folder of a data set, or LCM log; empty if there is a recording
+  RecordingArguments recording;
   std::int64_t first = 0;
   std::optional<std::int64_t> last;     ///< included; without: the last one there is
   std::optional<std::int64_t> session;  ///< without: the wall clock, us
@@ -27,8 +30,9 @@ struct PlayerOptions {
   bool is_one_session = false;          ///< or not: capture times and image numbers go on
   std::int64_t say_every = 0;           ///< frames; 0: never
   PlayerPace pace = PlayerPace::kLockstep;
-  double rate = 1;        ///< realtime: capture time that passes in a second
-  std::string write_log;  ///< file to write instead of publishing
+  double speed = 1;                  ///< realtime: capture time that passes in a second
+  std::vector<std::string> without;  ///< "keypoints", "masks": a detector publishes these
+  std::string write_log;             ///< file to write instead of publishing
   LockstepGateOptions gate{{"airdos-optimizer", "airdos-map-recorder"}};
   ImagePackerOptions image;
   InputCheckOptions check;
@@ -52,6 +56,7 @@ class PlayerArguments {
   std::string pace_ = "lockstep";
   std::string encoding_ = "auto";
   std::optional<std::string> wait_for_;
+  std::string without_;
   std::optional<int> frames_in_flight_;
 };
 

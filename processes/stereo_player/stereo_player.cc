@@ -77,6 +77,12 @@ StereoPlayer::StereoPlayer(const StereoSequence* sequence, std::int64_t session,
                            const ImagePackerOptions& options)
     : sequence_(sequence), session_(session), packer_(options) {}
 
+std::vector<std::string> StereoPlayer::TakeNotes() {
+  std::vector<std::string> notes = sequence_->TakeLateNotes();
+  for (std::string& note : packer_.TakeNotes()) notes.push_back(std::move(note));
+  return notes;
+}
+
 bool StereoPlayer::IsCalibrationDue(std::int64_t utime) {
   if (calibration_utime_ && utime >= *calibration_utime_ &&
       utime - *calibration_utime_ < kCalibrationPeriod_us) {
@@ -101,7 +107,9 @@ Envelope StereoPlayer::Calibration(const Header& header) const {
 }
 
 StereoPlayer::Frame StereoPlayer::Load(std::size_t index) {
-  SequenceFrame data = sequence_->Load(index);
+  std::optional<SequenceFrame> loaded = sequence_->TryLoad(index);
+  if (!loaded) return {};
+  SequenceFrame& data = *loaded;
   Frame frame;
   frame.header = {data.utime, static_cast<std::int64_t>(index), session_};
   std::vector<Envelope>& messages = frame.messages;
@@ -109,15 +117,20 @@ StereoPlayer::Frame StereoPlayer::Load(std::size_t index) {
 
   const FrameFiles files = sequence_->files(index);
   const auto pack_image = [&](const char* channel, const std::vector<std::uint8_t>& file,
-                              const std::string& name) {
+                              const cv::Mat& pixels, const std::string& name) {
     auto message = MessageOf<image_t>(frame.header);
-    SetRangeFor(file);
-    packer_.Pack(file, name.empty() ? "frame " + std::to_string(index) + " for " + channel : name,
-                 &message);
+    const std::string where =
+        name.empty() ? "frame " + std::to_string(index) + " for " + channel : name;
+    if (file.empty() && !pixels.empty()) {
+      packer_.Pack(pixels, where, &message);
+    } else {
+      SetRangeFor(file);
+      packer_.Pack(file, where, &message);
+    }
     messages.push_back(Pack(channel, message, name));
   };
-  pack_image(channel::kCameraLeft, data.left_image_file, files.left_image);
-  pack_image(channel::kCameraRight, data.right_image_file, files.right_image);
+  pack_image(channel::kCameraLeft, data.left_image_file, data.left_pixels, files.left_image);
+  pack_image(channel::kCameraRight, data.right_image_file, data.right_pixels, files.right_image);
   messages.push_back(PackKeypoints(channel::kPersonKeypointsLeft, frame.header,
                                    data.keypoint_layout, data.keypoints_left,
                                    files.keypoints_left));

@@ -29,12 +29,13 @@ class StereoPlayer {
     Header header;
     std::vector<Envelope> messages;
   };
-  /// Throws InputError if a file of the frame cannot be used.
+  /// No messages where the sequence turns out to lack the frame. Throws InputError if a file of the
+  /// frame cannot be used.
   Frame Load(std::size_t index);
   /// The calibration again, for a process that started later.
   Envelope Calibration(const Header& header) const;
 
-  std::vector<std::string> TakeNotes() { return packer_.TakeNotes(); }
+  std::vector<std::string> TakeNotes();
 
  private:
   bool IsCalibrationDue(std::int64_t utime);

@@ -28,7 +28,7 @@ struct Setting {
   std::function<void(RandomBundleOptions*, BundleOptions*)> apply;
 };
 
-void PrintTo(const Setting& setting, std::ostream* out) { *out << setting.name; }
+[[maybe_unused]] void PrintTo(const Setting& setting, std::ostream* out) { *out << setting.name; }
 
 std::vector<Setting> Settings() {
   using R = RandomBundleOptions;

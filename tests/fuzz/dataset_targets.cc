@@ -79,6 +79,31 @@ Layout KittiTracking() {
            {"alphapose_0/0000/000000.txt", Person()}}};
 }
 
+constexpr char kSensor[] =
+    "%YAML:1.0\nT_BS:\n  cols: 4\n  rows: 4\n  data: [0, 0, 1, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, "
+    "0, 1]\n"
+    "resolution: [16, 12]\ncamera_model: pinhole\nintrinsics: [20, 20, 8, 6]\n"
+    "distortion_model: radial-tangential\ndistortion_coefficients: [-0.1, 0.01, 0, 0]\n";
+
+Layout Euroc() {
+  std::string right_sensor = kSensor;
+  right_sensor.replace(right_sensor.find("-1, 0, 0, 0,"), 12, "-1, 0, 0, -0.2,");
+  const std::string first = "1403636579763555584";
+  const std::string second = "1403636579813555584";
+  return {"",
+          {{"mav0/cam0/data/" + first + ".png", SmallPng()},
+           {"mav0/cam1/data/" + first + ".png", SmallPng()},
+           {"mav0/cam0/data/" + second + ".png", SmallPng()},
+           {"mav0/cam1/data/" + second + ".png", SmallPng()},
+           {"mav0/cam0/data.csv", "#timestamp [ns],filename\n" + first + "," + first + ".png\n" +
+                                      second + "," + second + ".png\r\n"},
+           {"mav0/cam0/sensor.yaml", kSensor},
+           {"mav0/cam1/sensor.yaml", right_sensor},
+           {"mav0/state_groundtruth_estimate0/data.csv",
+            "#timestamp, p_RS_R_x [m]\n1403636579763555584,0,1,2,1,0,0,0,0.5\n"
+            "1403636579803555584,0.5,1,2,0.6,0,0.8,0,0.5\n1403636579823555584,1,1,2,1,0,0,0\n"}}};
+}
+
 void Play(const std::string& folder) {
   try {
     const std::unique_ptr<StereoSequence> sequence = OpenStereoSequence(folder);
@@ -151,6 +176,11 @@ void RunKittiTracking(const std::uint8_t* data, std::size_t size) {
 }
 std::vector<FuzzBytes> KittiTrackingSeeds() { return SeedsOf(KittiTracking()); }
 
+void RunEuroc(const std::uint8_t* data, std::size_t size) {
+  RunLayout(Euroc(), FuzzInput(data, size));
+}
+std::vector<FuzzBytes> EurocSeeds() { return SeedsOf(Euroc()); }
+
 void RunCheckFolder(const std::uint8_t* data, std::size_t size) {
   RunLayout(Shibuya(), FuzzInput(data, size), Check);
 }
@@ -186,14 +216,16 @@ std::vector<FuzzTarget> DatasetTargets() {
   return {{"shibuya", RunShibuya, ShibuyaSeeds, 4096},
           {"kitti_odometry", RunKittiOdometry, KittiOdometrySeeds, 4096},
           {"kitti_tracking", RunKittiTracking, KittiTrackingSeeds, 4096},
+          {"euroc", RunEuroc, EurocSeeds, 4096},
           {"check_folder", RunCheckFolder, ShibuyaSeeds, 4096},
           {"text_files", RunTextFiles, TextSeeds, 4096}};
 }
 
 std::vector<FuzzTarget> FuzzTargets() {
   std::vector<FuzzTarget> all;
-  for (const auto& group : {NodeTargets(), MessageTargets(), FileTargets(), DatasetTargets(),
-                            PictureTargets(), EvaluationTargets(), CalibrationTargets()})
+  for (const auto& group :
+       {NodeTargets(), MessageTargets(), FileTargets(), DatasetTargets(), PictureTargets(),
+        RecordingTargets(), KeypointTargets(), EvaluationTargets(), CalibrationTargets()})
     all.insert(all.end(), group.begin(), group.end());
   return all;
 }

@@ -1,5 +1,8 @@
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "common/evaluation/detection_report.h"
 #include "common/evaluation/help_curve.h"
 #include "common/evaluation/help_curve_plot.h"
 #include "common/evaluation/people_files.h"
@@ -9,7 +12,11 @@
 #include "common/evaluation/trajectory_report.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
+#include "processes/node/log/event_log.h"
+#include "processes/node/message/channels.h"
+#include "processes/tools/evaluate/keypoint_log.h"
 #include "tests/fuzz/fuzz_input.h"
+#include "tests/support/sample_messages.h"
 
 // What airdos-evaluate reads: files of other programs, and what follows from their numbers.
 
@@ -121,6 +128,93 @@ std::vector<FuzzBytes> PeopleSeeds() {
   return {seed.Take()};
 }
 
+// --- detections
+std::int16_t I16(FuzzInput* input) {
+  const unsigned low = input->U8();
+  return static_cast<std::int16_t>(low + 256u * input->U8());
+}
+
+/// Each person is a count, then the first joints: u, v (px, two bytes each) and confidence.
+std::vector<BodyKeypoints> TakePeople(FuzzInput* input) {
+  constexpr std::size_t kMostPeople = 20;
+  std::vector<BodyKeypoints> people(input->U8() % kMostPeople);
+  for (BodyKeypoints& person : people) {
+    const std::size_t num = input->U8() % (kNumJoints + 1);
+    for (std::size_t joint = 0; joint < num; ++joint) {
+      person[joint].u_px = I16(input);
+      person[joint].v_px = I16(input);
+      person[joint].confidence = input->U8() / 255.0;
+    }
+  }
+  return people;
+}
+
+void RunDetections(const std::uint8_t* data, std::size_t size) {
+  FuzzInput input(data, size);
+  constexpr StereoCamera kCamera = {640, 360, 500, 500, 320, 180, 0.25};
+  std::vector<DetectionFrame> frames;
+  try {
+    for (const TruePeople& truth : ReadTruePeople(WriteBlock("joints_gt.json", &input))) {
+      DetectionFrame frame;
+      frame.truth = TrueScene{truth.people, TrajectoryPose()};
+      frames.push_back(frame);
+    }
+  } catch (const InputError&) {
+  }
+  for (std::size_t i = 0; i == 0 || (i < frames.size() && !input.empty()); ++i) {
+    if (frames.empty()) frames.emplace_back();
+    frames[i].detected = {TakePeople(&input), TakePeople(&input)};
+    frames[i].given = {TakePeople(&input), TakePeople(&input)};
+  }
+  const DetectionReport report = EvaluateDetections(kCamera, frames);
+  DoubtsAbout(report);
+  ToTable(report);
+  JsonText(ToJson(report));
+}
+
+std::vector<FuzzBytes> DetectionSeeds() {
+  FuzzOutput seed;
+  seed.Block(TruePeopleText());
+  for (int list = 0; list < 8; ++list) {
+    seed.U8(2);
+    for (int person = 0; person < 2; ++person) {
+      seed.U8(kNumJoints);
+      for (int joint = 0; joint < kNumJoints; ++joint) {
+        for (const int value : {64 + joint, 1, 180 + 9 * joint - 40 * person, 0, 200}) {
+          seed.U8(value % 256);
+        }
+      }
+    }
+  }
+  return {seed.Take()};
+}
+
+void RunKeypointLog(const std::uint8_t* data, std::size_t size) {
+  try {
+    ReadKeypointLog(FuzzFolder::Write("keypoints.lcm", data, size));
+  } catch (const InputError&) {
+  }
+}
+
+std::vector<FuzzBytes> KeypointLogSeeds() {
+  const std::string path = FuzzFolder::Path() + "/keypoint_seed.lcm";
+  {
+    EventLogWriter writer(path);
+    const auto add = [&](const char* channel, std::int64_t seq, auto message) {
+      message.seq = seq;
+      const FuzzBytes bytes = Encode(message);
+      writer.Append(seq, channel, bytes.data(), bytes.size());
+    };
+    for (std::int64_t seq = 0; seq < 3; ++seq) {
+      add(channel::kCalibration, seq, Sample<stereo_calibration_t>());
+      add(channel::kPersonKeypointsLeft, seq, Sample<person_keypoints_t>());
+      add(channel::kPersonKeypointsRight, seq, Sample<person_keypoints_t>());
+    }
+  }
+  std::ifstream file(path, std::ios::binary);
+  return {FuzzBytes(std::istreambuf_iterator<char>(file), {})};
+}
+
 // --- figures of benchmarks
 constexpr char kRuns[] =
     R"({"sequence":"a","mode":"mask_only","max_observations":3,"frames":9,"frames_lost":1,)"
@@ -177,6 +271,8 @@ std::vector<FuzzBytes> SpeedSeeds() { return {Blocks(true, {kChains, kSolves})};
 std::vector<FuzzTarget> EvaluationTargets() {
   return {{"trajectory", RunTrajectory, TrajectorySeeds, 4096},
           {"people", RunPeople, PeopleSeeds, 8192},
+          {"detections", RunDetections, DetectionSeeds, 8192},
+          {"keypoint_log", RunKeypointLog, KeypointLogSeeds, 16384},
           {"help_curve", RunHelpCurve, HelpCurveSeeds, 4096},
           {"speed", RunSpeed, SpeedSeeds, 4096}};
 }

@@ -4,6 +4,7 @@
 #include "common/config/config_reader.h"
 #include "common/map/four_d_map.h"
 #include "common/map/map_export.h"
+#include "common/perception/tfjs_to_onnx.h"
 #include "common/util/error.h"
 #include "common/util/json_file.h"
 #include "processes/node/bus/fifo_bus.h"
@@ -194,6 +195,43 @@ std::vector<FuzzBytes> ConfigSeeds() {
           bytes("# a comment\nsection: {flag: false, whole: -5}\nother: &x {a: 1}\nthird: *x\n")};
 }
 
+// --- networks: what we read of them ourselves; ONNX is read by OpenCV
+void RunTfjsModel(const std::uint8_t* data, std::size_t size) {
+  const float weights[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  FuzzFolder::Write("weights.bin", weights, sizeof weights);
+  try {
+    TfjsCut cut;
+    cut.outputs = {"result"};
+    TfjsToOnnx(ReadTfjsModel(FuzzFolder::Write("model.json", data, size)), cut);
+  } catch (const InputError&) {
+  }
+}
+
+std::vector<FuzzBytes> TfjsSeeds() {
+  const std::string head = R"({"modelTopology": {"node": [{"name": "i", "op": "Placeholder"}, )";
+  const std::string end = R"(]}, "weightsManifest": [{"paths": ["weights.bin"], "weights": [)"
+                          R"({"name": "w", "shape": [1, 1, 3, 1], "dtype": "float32"}, )"
+                          R"({"name": "b", "shape": [1], "dtype": "float32"}, )"
+                          R"({"name": "q", "shape": [2], "dtype": "float32",)"
+                          R"( "quantization": {"dtype": "uint8", "scale": 0.5, "min": 1}}]}]})";
+  const std::string nodes[] = {
+      R"({"name": "result", "op": "_FusedConv2D", "input": ["i", "w", "b"], "attr": {)"
+      R"("strides": {"list": {"i": ["1", "2", "2", "1"]}}, "padding": {"s": "U0FNRQ=="},)"
+      R"( "fused_ops": {"list": {"s": ["Qmlhc0FkZA==", "UmVsdTY="]}}}})",
+      R"({"name": "s", "op": "Shape", "input": ["i"]}, )"
+      R"({"name": "result", "op": "ResizeBilinear", "input": ["i", "q"],)"
+      R"( "attr": {"half_pixel_centers": {"b": true}}})",
+      R"({"name": "a", "op": "Add", "input": ["i", "b"]}, )"
+      R"({"name": "result", "op": "AvgPool", "input": ["a"], "attr": {)"
+      R"("ksize": {"list": {"i": ["1", "2", "2", "1"]}}, "padding": {"s": "VkFMSUQ="}}})"};
+  std::vector<FuzzBytes> seeds;
+  for (const std::string& node : nodes) {
+    const std::string text = head + node + end;
+    seeds.emplace_back(text.begin(), text.end());
+  }
+  return seeds;
+}
+
 }  // namespace
 
 std::vector<FuzzTarget> FileTargets() {
@@ -202,7 +240,8 @@ std::vector<FuzzTarget> FileTargets() {
           {"check_log", RunCheckLog, LogSeeds, 16384},
           {"map_file", RunMapFile, MapFileSeeds, 8192},
           {"map_chunks", RunMapChunks, MapChunkSeeds, 8192},
-          {"config", RunConfig, ConfigSeeds, 4096}};
+          {"config", RunConfig, ConfigSeeds, 4096},
+          {"tfjs_model", RunTfjsModel, TfjsSeeds, 8192}};
 }
 
 }  // namespace airdos

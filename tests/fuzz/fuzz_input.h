@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <string>
 
 #include "processes/node/message/codec.h"
@@ -66,6 +67,30 @@ class FuzzFolder {
     std::ofstream file(path, std::ios::binary | std::ios::trunc);
     file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
     return path;
+  }
+  /// Files with the names that stand in the lines of a text.
+  static void MakeFiles(const std::string& folder, const FuzzBytes& text,
+                        const std::string& content = "") {
+    std::filesystem::create_directories(Path() + "/" + folder);
+    constexpr std::size_t kMaxNames = 40;
+    std::set<std::string> names;
+    std::string name;
+    const auto end_name = [&] {
+      if (!name.empty() && name != "." && name != ".." && name.size() < 200) names.insert(name);
+      name.clear();
+    };
+    for (const std::uint8_t c : text) {
+      if (c == '\n') {
+        end_name();
+      } else if (c != '/' && c != 0) {
+        name += static_cast<char>(c);
+      }
+      if (names.size() >= kMaxNames) break;
+    }
+    end_name();
+    for (const std::string& one : names) {
+      Write(std::string(folder).append("/").append(one), content.data(), content.size());
+    }
   }
 
  private:

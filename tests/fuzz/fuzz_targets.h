@@ -29,7 +29,9 @@ std::vector<FuzzTarget> MessageTargets();      ///< message types, images, what 
 std::vector<FuzzTarget> FileTargets();         ///< logs, maps, configurations
 std::vector<FuzzTarget> DatasetTargets();      ///< data sets and their files
 std::vector<FuzzTarget> PictureTargets();      ///< images, masks, their names, the camera
+std::vector<FuzzTarget> RecordingTargets();    ///< folders and times of recordings
 std::vector<FuzzTarget> EvaluationTargets();   ///< what airdos-evaluate reads
+std::vector<FuzzTarget> KeypointTargets();     ///< people that other programs found
 std::vector<FuzzTarget> CalibrationTargets();  ///< calibration files of other tools
 
 /// Further seeds of the target "messages": the first messages on each channel of a log that are

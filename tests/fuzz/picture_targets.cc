@@ -1,7 +1,6 @@
 #include <zlib.h>
 
 #include <opencv2/imgcodecs.hpp>
-#include <set>
 
 #include "common/calibration/calib_json.h"
 #include "common/check/check_camera.h"
@@ -144,29 +143,6 @@ std::vector<FuzzBytes> ImageSeeds() {
 }
 
 // --- names
-constexpr std::size_t kMaxNames = 40;
-
-/// Empty files with the names that stand in the lines of a text.
-void MakeFiles(const std::string& folder, const FuzzBytes& text) {
-  fs::create_directories(folder);
-  std::set<std::string> names;
-  std::string name;
-  const auto end_name = [&] {
-    if (!name.empty() && name != "." && name != ".." && name.size() < 200) names.insert(name);
-    name.clear();
-  };
-  for (const std::uint8_t c : text) {
-    if (c == '\n') {
-      end_name();
-    } else if (c != '/' && c != 0) {
-      name += static_cast<char>(c);
-    }
-    if (names.size() >= kMaxNames) break;
-  }
-  end_name();
-  for (const std::string& one : names) std::ofstream(folder + "/" + one);
-}
-
 void UseNames(const std::string& root, std::size_t num_rows) {
   try {
     HoldsImages(root + "/left");
@@ -190,8 +166,8 @@ void RunImageNames(const std::uint8_t* data, std::size_t size) {
   FuzzInput input(data, size);
   const std::size_t num_rows = input.U8();
   const std::string root = FuzzFolder::Path() + "/names";
-  MakeFiles(root + "/left", input.Block());
-  MakeFiles(root + "/right", input.Block());
+  FuzzFolder::MakeFiles("names/left", input.Block());
+  FuzzFolder::MakeFiles("names/right", input.Block());
   UseNames(root, num_rows);
   fs::remove_all(root);
 }

@@ -147,6 +147,24 @@ TEST(JudgeTrafficTest, PassesOnWhatProcessesComplainOf) {
   }
 }
 
+TEST(JudgeTrafficTest, ShowsTheRowErrorOfTheFrontend) {
+  process_status_t status = StatusOf("airdos-frontend", 1);
+  const auto rows = [&](std::int64_t millipx) {
+    status.channels.resize(1);
+    status.channels[0].channel = "row_error_millipx";
+    status.channels[0].num_received = millipx;
+    for (const Diagnosis& diagnosis : JudgeTraffic({}, TrafficOf({status}), "1.0", "abc")) {
+      if (diagnosis.kind == "bus.rows") return diagnosis;
+    }
+    return Diagnosis();
+  };
+  EXPECT_EQ(rows(137).health, Health::kOk);
+  EXPECT_EQ(rows(137).what,
+            "airdos-frontend (1): rows of left and right images differ by 0.14 px (median)");
+  EXPECT_EQ(rows(1500).health, Health::kOk);
+  EXPECT_EQ(rows(1501).health, Health::kWarn);
+}
+
 TEST(JudgeRoundTripTest, LossAndLatency) {
   const auto health = [](const RoundTrip& trip) { return JudgeRoundTrip(trip)[0].health; };
   EXPECT_EQ(health({60, 60, 0.5, 2}), Health::kOk);

@@ -95,6 +95,9 @@ TEST(FrameJoinerValues, TheNewestCompleteIsTheNewest) {
   EXPECT_EQ(joiner.NewestComplete()->seq, 1);
   Add(1, 2, &joiner);
   EXPECT_EQ(joiner.NewestComplete()->seq, 2);
+  EXPECT_EQ(joiner.NewestComplete(1)->seq, 1);
+  EXPECT_EQ(joiner.NewestComplete(2)->seq, 0);
+  EXPECT_FALSE(joiner.NewestComplete(3));
 }
 
 // A million ahead may be; one more is nonsense, or all that follows were late.

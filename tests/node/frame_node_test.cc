@@ -33,6 +33,7 @@ class ScribeNode : public FrameNode<Inputs> {
     JoinParts<map_update_t>("PARTS", &Inputs::updates);
     JoinCalibration();
   }
+  using FrameNode::SetMaxBehind;
   std::string text;
   std::set<std::int64_t> awaited_feedback;
   std::int64_t fails_at = -1;  // this frame, as long as it has inputs
@@ -403,6 +404,22 @@ TEST(FrameNodeTest, RealtimeSkipsToTheNewestCompleteFrame) {
   Work(&node);
   EXPECT_EQ(node.text, "session7 2mp0@1 ");
   EXPECT_EQ(node.frames().num_skipped, 2);
+}
+
+TEST(FrameNodeTest, RealtimeLetsSomeWaitWhereTheNodeSaysSo) {
+  ScribeNode node;
+  node.SetMaxBehind(2);
+  Give(&node, Calibration(1));
+  for (std::int64_t seq = 0; seq < 4; ++seq) {
+    Give(&node, Mask(seq));
+    Give(&node, Pose(seq));
+    Give(&node, Part(seq, 0, 1));
+  }
+  node.SkipToNewest();
+  EXPECT_EQ(node.frames().num_skipped, 1);
+  EXPECT_EQ(node.num_pending(), 3u);
+  node.SkipToNewest();
+  EXPECT_EQ(node.frames().num_skipped, 1);
 }
 
 /// One channel's messages of two sessions, with losses, duplicates, late and corrupt ones.

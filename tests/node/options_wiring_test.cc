@@ -22,6 +22,8 @@
 #include "processes/human_tracker/human_tracker_options.h"
 #include "processes/map_recorder/map_recorder_options.h"
 #include "processes/optimizer/optimizer_options.h"
+#include "processes/person_detector/person_detector_options.h"
+#include "processes/stereo_camera/camera_options.h"
 #include "processes/stereo_player/player_options.h"
 
 namespace airdos {
@@ -42,8 +44,9 @@ Process Make() {
 
 const std::vector<std::function<Process()>>& Makers() {
   static const std::vector<std::function<Process()>> makers{
-      Make<FrontendOptions>, Make<HumanTrackerOptions>, Make<OptimizerOptions>,
-      Make<MapRecorderOptions>, Make<PlayerOptions>};
+      Make<FrontendOptions>,    Make<HumanTrackerOptions>,   Make<OptimizerOptions>,
+      Make<MapRecorderOptions>, Make<PersonDetectorOptions>, Make<PlayerOptions>,
+      Make<CameraOptions>};
   return makers;
 }
 
@@ -216,11 +219,12 @@ std::set<std::string> WordsOf(const std::string& text) {
   return words;
 }
 
-/// Key and member of every line that adds an option, as the source says them.
+/// Key and member of every line that adds an option, as the source says them. A key without its
+/// section is one of both networks of the person detector.
 std::vector<std::pair<std::string, std::string>> LinesOf(const std::string& path) {
   const std::string text = TextOf(path);
   const std::regex line(
-      R"re(Add(?:Shared|Choice<\w+>)?\(\s*"(\w+\.\w+)",\s*(?:noise\(|\{)?&([\w:.>-]+))re");
+      R"re(Add(?:Shared|Choice<\w+>)?\(\s*(?:key\()?"(\w+\.?\w+)"\)?,\s*(?:noise\(|\{)?&([\w:.>-]+))re");
   std::vector<std::pair<std::string, std::string>> lines;
   for (std::sregex_iterator it(text.begin(), text.end(), line), end; it != end; ++it) {
     const std::string member = (*it)[2];
@@ -237,16 +241,26 @@ TEST(OptionsWiringTest, KeysSayTheirMembersNames) {
       {"people.max_static", "max_static_for_people"},
       {"tracking.min_seen", "min_seen_to_report"},
       {"joints.refine", "is_refined"},
+      {"joints.min_score", "min_joint_score"},
+      {"joints.min_number", "min_joints"},
       {"people.rigidity", "use_rigidity"},
       {"people.motion", "use_motion"},
       {"people.huber_sigmas", "huber_dynamic_sigmas"}};
-  const std::string paths[] = {
-      "frontend/frontend_options.cc", "human_tracker/human_tracker_options.cc",
-      "optimizer/optimizer_options.cc", "map_recorder/map_recorder_options.cc",
-      "stereo_player/player_options.cc"};
+  const std::string paths[] = {"frontend/frontend_options.cc",
+                               "human_tracker/human_tracker_options.cc",
+                               "optimizer/optimizer_options.cc",
+                               "map_recorder/map_recorder_options.cc",
+                               "person_detector/person_detector_options.cc",
+                               "stereo_player/player_options.cc",
+                               "stereo_camera/camera_options.cc"};
   for (std::size_t i = 0; i < Makers().size(); ++i) {
     const auto lines = LinesOf("processes/" + paths[i]);
-    EXPECT_EQ(lines.size(), Makers()[i]().table.options().size()) << paths[i];
+    const auto num_twice = std::count_if(lines.begin(), lines.end(), [](const auto& key_member) {
+      return key_member.first.find('.') == std::string::npos;
+    });
+    EXPECT_EQ(lines.size() + static_cast<std::size_t>(num_twice),
+              Makers()[i]().table.options().size())
+        << paths[i];
     for (const auto& [key, member] : lines) {
       const auto other = others.find(key);
       if (other != others.end()) {

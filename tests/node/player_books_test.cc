@@ -13,6 +13,7 @@
 #include "airdos/person_keypoints_t.hpp"
 #include "airdos/person_mask_t.hpp"
 #include "airdos/pose_t.hpp"
+#include "airdos/process_status_t.hpp"
 #include "airdos/stereo_calibration_t.hpp"
 #include "common/util/error.h"
 #include "processes/node/live/process_usage.h"
@@ -293,6 +294,48 @@ TEST(PlayerLoopTest, GoesNoFasterThanReceiversBuffersAreEmptied) {
   loop.Run();
   EXPECT_GE(SteadyClock_s() - start_s, 4 * LargeFrames::kBytes / kMaxBytesPerSecond);
   EXPECT_NE(said.str().find("published 4 frames"), std::string::npos) << said.str();
+}
+
+/// Three frames five seconds apart; before the last one, somebody says that it is at the first.
+class SlowReader : public FrameSource {
+ public:
+  explicit SlowReader(LcmTransport* transport) : transport_(transport) {}
+  std::vector<Envelope> NextFrame() override {
+    if (num_ == 3) return {};
+    if (num_ == 2) {
+      auto status = MessageOf<process_status_t>({0, 0, 7});
+      status.process = "slow";
+      status.state = process_status_t::STATE_READY;
+      status.num_frames_done = 1;
+      const std::vector<std::uint8_t> bytes = Encode(status);
+      transport_->Publish(channel::kStatus, bytes.data(), bytes.size());
+    }
+    frame_done_t message = TextMessage(num_, "x");
+    message.utime = 5000000 * num_++;
+    return {{"A", Encode(message)}};
+  }
+  double fraction_done() const override { return 0; }
+  std::vector<std::string> TakeNotes() override { return {}; }
+
+ private:
+  LcmTransport* transport_;
+  std::int64_t num_ = 0;
+};
+
+TEST(PlayerLoopTest, InRealtimePaceItSaysThatProcessesFallBehind) {
+  PlayerOptions options;
+  options.pace = PlayerPace::kRealtime;
+  options.speed = 1000;
+  options.gate.wait_for.clear();
+  LcmTransport transport("memq://");
+  std::ostringstream said;
+  const ProcessLog log("player", LogLevel::kInfo, LogStyle::kJournal, &said, nullptr);
+  PlayerLoop loop(
+      options, [&](int) { return std::make_unique<SlowReader>(&transport); }, &transport, &log);
+  loop.Run();
+  EXPECT_NE(said.str().find("<4>5.0 s behind, growing: slow has done image 0 of 1"),
+            std::string::npos)
+      << said.str();
 }
 
 TEST_F(PlayerFilesTest, EventsHaveTheTimeOfTheNewestMessageOfTheirFrame) {

@@ -111,6 +111,23 @@ TEST_F(ReplayTest, TwiceGivesTheSameBytes) {
   EXPECT_EQ(first.remarks, std::vector<std::string>());
 }
 
+// They are inputs where a source has them.
+TEST_F(ReplayTest, PeopleThatADetectorPublishesAreOutput) {
+  WriteInputLog("in.lcm", 4);
+  LogSource source(folder_ + "in.lcm");
+  std::vector<ReplayNode> nodes;
+  nodes.push_back(
+      {std::make_unique<TextNode>("detector", std::vector<std::string>{channel::kCameraLeft},
+                                  channel::kPersonKeypointsLeft),
+       {channel::kPersonKeypointsLeft}});
+  ReplayOptions options;
+  options.out_path = folder_ + "out.lcm";
+  const ReplayResult result = Replay(&source, nodes, options);
+  EXPECT_EQ(result.num_events, 4);
+  ASSERT_EQ(result.digests.count(channel::kPersonKeypointsLeft), 1u);
+  EXPECT_EQ(result.digests.at(channel::kPersonKeypointsLeft).num_messages, 4);
+}
+
 TEST_F(ReplayTest, InParallelGivesTheSame) {
   WriteInputLog("in.lcm", 50);
   for (const bool writes_inputs : {false, true}) {

@@ -435,7 +435,7 @@ TEST(UserCases, Case86cImagesOfOtherTimesAreNotHeldAgainstEachOther) {
 
 TEST(UserCases, CaseRowErrorOfImagesWithoutCorners) {
   const cv::Mat grey(192, 320, CV_8UC1, cv::Scalar(90));
-  EXPECT_FALSE(MeasureRowError(grey, grey, 300));
+  EXPECT_FALSE(RowErrorOf(MatchStereo(grey, grey, 300)));
 }
 
 std::string WatchMasks(const cv::Mat& mask, const BodyKeypoints& person) {

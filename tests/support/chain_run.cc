@@ -205,6 +205,7 @@ ChainRun RunChain(const ChainInput& input) {
   setup.config_dir = std::string(AIRDOS_SOURCE_DIR) + "/launch_scripts/config";
   setup.run_dir = folder.path();
   setup.people = input.people;
+  setup.detects = input.detects;
   setup.overrides = TestOverrides();
   ReplayOptions options;
   options.out_path = folder.file(kLogName);

@@ -57,6 +57,7 @@ struct ChainInput {
   std::string people;  ///< off, mask_only, on
   bool has_ned_truth = false;
   PeopleTruth truth;
+  bool detects = false;  ///< the person detector runs, too; the input must have no people
 };
 
 /// Runs the four nodes with the committed configuration, and TestOverrides(), in a temporary

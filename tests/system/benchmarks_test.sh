@@ -30,20 +30,21 @@ says() { grep -qF -e "$1" "$work/out" "$work/err" || fail "'$(cat "$work/out" "$
 
 wrong_options_exit_2_in_one_line() {
   local script
-  for script in sequences people_help perturbed shibuya kitti_tracking speed memory; do
+  for script in sequences people_help perturbed shibuya kitti_tracking speed memory detector; do
     expect 0 "Usage: launch_scripts/benchmark/benchmark_$script.sh" "$scripts/benchmark/benchmark_$script.sh" --help
     expect 2 "--no-such-option" "$scripts/benchmark/benchmark_$script.sh" --no-such-option
     expect 2 "no folder '/nonexistent'" "$scripts/benchmark/benchmark_$script.sh" /nonexistent
     expect 2 "--run-dir needs a value" "$scripts/benchmark/benchmark_$script.sh" "$work" --run-dir
     expect 2 "(see --help)" "$scripts/benchmark/benchmark_$script.sh"
   done
-  for script in people_help perturbed shibuya kitti_tracking; do
+  for script in people_help perturbed shibuya kitti_tracking detector; do
     expect 2 "--jobs: not a whole number above 0: '0'" "$scripts/benchmark/benchmark_$script.sh" "$work" --jobs 0
   done
   for script in sequences perturbed shibuya kitti_tracking; do
     expect 2 "--modes: 'full' is none of" "$scripts/benchmark/benchmark_$script.sh" "$work" --modes 'on full'
   done
   expect 2 "--caps: not a whole number above 0: 'x'" "$scripts/benchmark/benchmark_people_help.sh" "$work" --caps '3 x'
+  expect 2 "--every: not a whole number above 0: '0'" "$scripts/benchmark/benchmark_detector.sh" "$work" --every '1 0'
   expect 2 "--people: 'full' is none of" "$scripts/benchmark/benchmark_speed.sh" "$work" --people full
   expect 2 "--live: 'maybe' is neither yes nor no" "$scripts/benchmark/benchmark_speed.sh" "$work" --live maybe
   expect 2 "--loops: not a whole number above 0: '0'" "$scripts/benchmark/benchmark_memory.sh" "$work" --loops 0
@@ -71,7 +72,7 @@ mkdir -p "$run"
 echo truth > "$run/ground_truth.tum"
 echo estimate > "$run/trajectory.tum"
 echo '{"num_frames": 100, "num_events": 900, "wall_s": 5, "peak_memory_mb": 77,
-  "processes": {"frontend": {"cpu_ms": {"mean": 1, "p50": 1.5, "p99": 7}}, "human_tracker": {"cpu_ms": {"mean": 2}}, "optimizer": {"cpu_ms": {"mean": 3}}}}' > "$timing"
+  "processes": {"frontend": {"cpu_ms": {"mean": 1, "p50": 1.5, "p99": 7}}, "human_tracker": {"cpu_ms": {"mean": 2}}, "optimizer": {"cpu_ms": {"mean": 3}}, "person_detector": {"cpu_ms": {"mean": 4}}}}' > "$timing"
 FAKE
   cat > "$work/bin/airdos-evaluate" << 'FAKE'
 #!/bin/bash
@@ -92,6 +93,17 @@ if [[ $command == speed ]]; then
 fi
 if [[ $command == curve ]]; then
   echo "curve of $(wc -l < "$runs") runs"
+  exit 0
+fi
+if [[ $command == people ]]; then
+  echo '{"states_to_be_seen": 50, "states_to_be_seen_found": 40, "idf1": 0.6, "joint_error": {"measured_m": {"median": 0.15}}}' > "$json"
+  exit 0
+fi
+if [[ $command == detections ]]; then
+  bands='"below 6 m": {"recall_percent": 11}, "6 to 12 m": {"recall_percent": 12}, "from 12 m": {"recall_percent": 13}'
+  echo "{\"detected\": {\"left\": {\"to_be_seen\": {\"recall_percent\": 14}, \"to_be_seen_by_depth\": {$bands}, \"false_per_image\": 0.5,
+    \"joint_error_px\": {\"median\": 6}}, \"disparity_error_px\": {\"median\": 0.25}},
+    \"detected_against_given\": {\"left\": {\"given\": {\"recall_percent\": 24}, \"given_by_depth\": {$bands}, \"without_given_per_image\": 0.75}}}" > "$json"
   exit 0
 fi
 [[ $run != *tilted* || ${axes:-auto} != auto ]] || exit 2
@@ -188,6 +200,19 @@ sequences_prints_a_row_a_run() {
   says '| one | mask_only | 98 / 100 | 0.0100 | 0.0020 | 0.2000 | 1.00 | 1 / 2 / 3 |'
 }
 
+detector_is_judged_by_what_the_folder_has() {
+  touch "$work/sets/two/"{joints_gt.json.gz,gt_tum_optical.txt}
+  run 0 benchmark_detector "$work/sets/one" "$work/sets/two" --every '1 3'
+  (($(calls '--people on --masks off') == 2)) || fail "the given people: $(cat "$work/calls")"
+  (($(calls '--set person_detector:time.detect_every=3') == 2)) || fail "detect_every: $(cat "$work/calls")"
+  (($(calls 'evaluate people') == 3 && $(calls 'evaluate detections') == 4)) || fail "evaluations: $(cat "$work/calls")"
+  says '| one | given | 98 / 100 | 0.0100 | - / - | - | - | 4 |'
+  says '| two | 3 | 98 / 100 | 0.0100 | 40 / 50 | 0.60 | 0.15 | 4 |'
+  says '| two | 1 | 14 | 11 | 12 | 13 | 0.50 | 6.0 | 0.25 |'
+  says '| one (against the given) | 1 | 24 | 11 | 12 | 13 | 0.75 | - | 0.25 |'
+  rm "$work/sets/two/"*
+}
+
 command -v jq > /dev/null || {
   echo "SKIPPED: no jq"
   exit 77
@@ -201,5 +226,6 @@ perturbed_gives_median_and_worst
 shibuya_says_what_is_missing_failed_or_ambiguous
 kitti_tracking_takes_28_from_testing
 sequences_prints_a_row_a_run
+detector_is_judged_by_what_the_folder_has
 speed_runs_in_one_thread_and_in_several
 echo "all checks passed"

@@ -136,7 +136,8 @@ TEST_F(CalibrationProcessTest, CheckFindsImagesOfAnotherTimeAndSize) {
   EXPECT_TRUE(Holds(half.errors, "calibrated for images of 320x192 px, these have 160x96 px"));
   EXPECT_EQ(Check(file, "half", "half_right", {"--scale-calibration"}).exit_code, 0);
   folder_.WritePicture("half_right/000000.png", NoisePicture(160, 95, 1));
-  EXPECT_TRUE(Holds(Check(file, "half", "half_right").errors, "has 160x95 px, the left image"));
+  EXPECT_TRUE(
+      Holds(Check(file, "half", "half_right").errors, "have 160x95 px, the left ones 160x96"));
 }
 
 }  // namespace

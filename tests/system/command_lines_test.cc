@@ -53,7 +53,7 @@ class CommandLineTest : public testing::Test {
     if (program == "airdos-map") return {{}, {"info"}, {"export"}, {"plot"}};
     if (program == "airdos-calibration") return {{}, {"show"}, {"convert"}, {"check"}};
     if (program == "airdos-evaluate")
-      return {{}, {"trajectory"}, {"people"}, {"curve"}, {"speed"}, {"ablation"}};
+      return {{}, {"trajectory"}, {"people"}, {"detections"}, {"curve"}, {"speed"}, {"ablation"}};
     return {{}};
   }
   Answer Run(const std::string& program, std::vector<std::string> arguments) const {
@@ -90,13 +90,14 @@ std::vector<HelpEntry> EntriesOf(const std::string& help) {
 
 // Files and folders have the same names everywhere.
 const std::set<std::string> kVocabulary = {
-    "INPUT", "--data", "--log", "--out", "--run-dir", "--config", "--json", "--plot", "--timing",
-    "--resolved-config", "--write-log",
+    "--calibration", "INPUT", "--data", "--log", "--out", "--run-dir", "--config", "--json",
+    "--plot", "--timing", "--resolved-config", "--write-log",
     // What is compared with what.
-    "--estimate", "--ground-truth", "--times", "--people", "--joints", "--runs", "--solver"};
+    "--estimate", "--ground-truth", "--times", "--people", "--joints", "--runs", "--solver",
+    "--keypoints-left", "--keypoints-right"};
 
 TEST_F(CommandLineTest, EachHelpTextCanBeRead) {
-  ASSERT_GE(Programs().size(), 13u);
+  ASSERT_GE(Programs().size(), 14u);
   for (const std::string& program : Programs()) {
     for (std::vector<std::string> arguments : CommandsOf(program)) {
       const std::string title = program + (arguments.empty() ? "" : " " + arguments[0]);
@@ -149,6 +150,8 @@ TEST_F(CommandLineTest, EachProcessPrintsItsConfigurationAndWhatItMeans) {
                                                       {"airdos-human-tracker", "human_tracker"},
                                                       {"airdos-map-recorder", "map_recorder"},
                                                       {"airdos-optimizer", "optimizer"},
+                                                      {"airdos-person-detector", "person_detector"},
+                                                      {"airdos-stereo-camera", "stereo_camera"},
                                                       {"airdos-stereo-player", "stereo_player"}};
   for (const auto& [program, config] : configs) {
     std::ifstream file(AIRDOS_SOURCE_DIR "/launch_scripts/config/" + config + ".yaml");
@@ -218,6 +221,11 @@ TEST_F(CommandLineTest, MistypedCommandsAndChoicesAreAnswered) {
     EXPECT_EQ(answer.exit_code, 2);
     EXPECT_NE(answer.errors.find("INPUT is missing"), std::string::npos) << answer.errors;
   }
+  // Who reads no log does not offer to.
+  EXPECT_EQ(Run("airdos-import", {"--out", "x"}).errors,
+            "airdos-import: INPUT is missing: the folder of a data set (--data), or a recording "
+            "(--images, --video)\n");
+  EXPECT_EQ(Run("airdos-import", {"--help"}).output.find("LCM log"), std::string::npos);
 }
 
 TEST_F(CommandLineTest, SetMayNameTheProcessItIsMeantFor) {

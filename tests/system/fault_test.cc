@@ -173,7 +173,7 @@ TEST_F(FaultTest, ASlowChainSkipsAndCountsAndKeepsUp) {
   constexpr std::int64_t kLast = 39;
   chain_->SetNodeArguments({"--pace", "realtime", "--deadline-s", "1"});
   ASSERT_NO_FATAL_FAILURE(chain_->StartNodes());
-  chain_->StartPlayer(Write(SampleEvents(0, kLast)), {"--pace", "realtime", "--rate", "10"});
+  chain_->StartPlayer(Write(SampleEvents(0, kLast)), {"--pace", "realtime", "--speed", "10"});
   HearTheEnd(kLast);
   StopAndHear();
   std::int64_t num_skipped = 0;
@@ -197,7 +197,9 @@ struct SlowOptimizer {
 };
 
 /// What ctest shows.
-void PrintTo(const SlowOptimizer& slow, std::ostream* stream) { *stream << slow.name; }
+[[maybe_unused]] void PrintTo(const SlowOptimizer& slow, std::ostream* stream) {
+  *stream << slow.name;
+}
 
 class SlowOptimizerTest : public FaultTest, public testing::WithParamInterface<SlowOptimizer> {};
 

@@ -28,7 +28,7 @@ violations() {
       if (in_common && !(folder in rank)) print FILENAME ": folder common/" folder " has no place in the order"
       is_node = !in_common && FILENAME ~ /_node\.(h|cc)$/
       is_installed = FILENAME ~ /^processes\/node\/message\/(codec|channels)\.h$/  # as in lcmtypes/CMakeLists.txt
-      is_estimator = folder == "frontend" || folder == "human_tracker" || folder == "optimizer"
+      is_estimator = folder == "frontend" || folder == "human_tracker" || folder == "optimizer" || folder == "person_detector"
     }
     /kGroundTruth|"GROUND_TRUTH"/ && !in_common && is_estimator { complain("ground truth never reaches an estimator") }
     !/^[ \t]*#[ \t]*include/ { next }

@@ -138,7 +138,7 @@ each_command_is_completed() {
   completes airdos-frontend --pace = r gives realtime
   completes airdos-run-live --pace '' gives lockstep realtime
   completes airdos-replay --people m gives mask_only
-  completes airdos-evaluate '' gives trajectory people curve speed ablation
+  completes airdos-evaluate '' gives trajectory people detections curve speed ablation
   completes airdos-evaluate trajectory --pl gives --plot
   completes airdos-calibration '' gives show convert check
   completes airdos-calibration convert --to k gives kalibr
@@ -156,7 +156,7 @@ units_are_right() {
   command -v systemd-analyze > /dev/null || return 0
   local process
   local -a units=(airdos.target airdos-network.service)
-  for process in frontend human-tracker optimizer map-recorder stereo-player record; do units+=("airdos@$process.service"); done
+  for process in frontend human-tracker optimizer map-recorder stereo-player stereo-camera record; do units+=("airdos@$process.service"); done
   in_root systemd-analyze verify --man=no "${units[@]}" > "$work/out" 2>&1 || fail "systemd-analyze verify: $(cat "$work/out")"
   ! grep airdos "$work/out" || fail "systemd-analyze verify (see above)"
 }

@@ -312,7 +312,7 @@ TEST_F(PlayerProcessTest, RealtimeFollowsTheCaptureTimes) {
   if (IsSkipped()) return;
   const auto echo =
       Start("airdos-echo", {"--config", (folder_ / "echo.yaml").string(), "--pace", "realtime"});
-  const auto player = StartPlayer(MakeData(20), {"--pace", "realtime", "--rate", "2"});
+  const auto player = StartPlayer(MakeData(20), {"--pace", "realtime", "--speed", "2"});
   ASSERT_TRUE(HearUntil([&] { return player->HasEnded(); }));
   EXPECT_EQ(player->Wait(0), 0) << player->Errors();
   EXPECT_TRUE(HearUntil([&] { return !echoes_.empty() && echoes_.back().seq == 19; }));

@@ -7,6 +7,8 @@ add_test(NAME scripts_live_ends_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts
 set_tests_properties(scripts_live_ends_test PROPERTIES LABELS system TIMEOUT ${AIRDOS_TEST_TIMEOUT_S} SKIP_RETURN_CODE 77)
 add_test(NAME long_run_ends_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/long_run_ends_test.sh ${PROJECT_SOURCE_DIR})
 set_tests_properties(long_run_ends_test PROPERTIES LABELS system TIMEOUT ${AIRDOS_TEST_TIMEOUT_S} COST 20)
+add_test(NAME networks_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/networks_test.sh ${PROJECT_SOURCE_DIR})
+set_tests_properties(networks_test PROPERTIES LABELS system TIMEOUT ${AIRDOS_TEST_TIMEOUT_S})
 add_test(NAME install_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/install_test.sh ${CMAKE_BINARY_DIR}
                                    $<IF:$<TARGET_EXISTS:airdos_jar>,JAR,NO_JAR>)
 set_tests_properties(install_test PROPERTIES LABELS system TIMEOUT ${AIRDOS_TEST_TIMEOUT_S} ENVIRONMENT CXX=${CMAKE_CXX_COMPILER})

@@ -27,6 +27,14 @@ fails input && echo "airdos-stereo-player: no calibration" && exit 2
 fails player && echo "airdos-stereo-player: lost" && exit 4
 exit 0
 FAKE
+  make_program "$work/bin/airdos-stereo-camera" << FAKE
+fails camera && echo "airdos-stereo-camera: no such device" && exit 2
+echo "2026-03-01T12:34:56.789Z airdos-stereo-camera: warning: 2.3 s behind, growing: airdos-optimizer has done image 7 of 30"
+for file in map.airdos trajectory.tum ground_truth.tum; do fails nothing || echo one > "$work/run/\$file"; done
+exit 0
+FAKE
+  make_program "$work/bin/airdos-map" <<< 'fails map && exit 1; exit 0'
+  make_program "$work/bin/airdos-evaluate" < /dev/null
   make_program "$work/bin/airdos-check" << 'FAKE'
 fails unreadable && echo "airdos-check: no such thing" && exit 2
 fails check || exit 0
@@ -84,7 +92,7 @@ replay_again_is_another_session() {
   run 0 replay_log
   run 0 replay_log --speed 2.5
   ran 1 "^lcm-logplayer"
-  ran 1 "^airdos-stereo-player --log $log --session [0-9]{16} --no-check --lcm-url udpm://.* --pace realtime --rate 2.5\$"
+  ran 1 "^airdos-stereo-player --log $log --session [0-9]{16} --no-check --lcm-url udpm://.* --pace realtime --speed 2.5\$"
   run 0 replay_log --speed 0.0
   ran 1 '--pace lockstep$'
   (($(sed -n 's/.*--session \([0-9]*\).*/\1/p' "$work/calls" | sort -u | wc -l) == 2)) || fail "sessions: $(cat "$work/calls")"
@@ -210,6 +218,97 @@ live_ends_as_its_player_does() {
   all_ended 0
 }
 
+# started_with PROCESS TEXT: its stand-in notes its arguments in its log.
+started_with() { grep -qF -e "$2" "$work/run/$1.log" || fail "$1 was not started with '$2': $(cat "$work/run/$1.log")"; }
+
+live_takes_a_camera_and_makes_what_the_demo_makes() {
+  local process
+  make_process airdos-person-detector
+  make_process airdos-record
+  fresh
+  start_live --camera "$log" --side-by-side --rate 30 --calibration "$log" "$log" --capture-size 640x240
+  end_live 0
+  for process in "${processes[@]}" person-detector; do
+    started_with "$process" "--pace realtime"
+    live_says out "run_live.sh: $process: exit code 0"
+    started_with "$process" "--deadline-s 0.6 --resolved-config $work/run/${process//-/_}.yaml"
+  done
+  started_with person-detector "--set person_detector:time.detect_every=2 --set person_detector:network.short_side_px=256"
+  ran 1 "^airdos-stereo-camera --camera $log --calibration $log $log --side-by-side --rate 30 --capture-size 640x240 --lcm-url udpm://.* \
+--resolved-config $work/run/stereo_camera.yaml\$"
+  live_says err 'airdos-stereo-camera: warning: 2.3 s behind, growing'
+  live_says out 'run_live.sh: camera: exit code 0'
+  ran 1 "^airdos-evaluate trajectory --estimate $work/run/trajectory.tum --ground-truth $work/run/ground_truth.tum .* --plot $work/run/trajectory.png"
+  ran 1 "^airdos-map plot $work/run/map.airdos --out $work/run/map.png --force\$"
+  live_says out "$work/run/map.airdos"
+  all_ended 0
+  ! [[ -e $work/run/record.log ]] || fail "a camera was recorded unasked"
+  FAILS=map start_live --camera "$log" --over-under --calibration "$log" --no-detect --pace lockstep
+  end_live 0
+  live_says out 'run_live.sh: no picture of the map (see above)'
+  ran 1 "^airdos-stereo-camera .* --over-under .*--nobody\$"
+  ! [[ -e $work/run/person-detector.log ]] || fail "the detector was started"
+  started_with optimizer "--pace lockstep"
+  if grep -q -e "--deadline-s\|--set" "$work/run/optimizer.log"; then fail "optimizer.log: $(cat "$work/run/optimizer.log")"; fi
+  FAILS=camera start_live --camera "$log" --side-by-side --calibration "$log" --no-detect
+  end_live 2
+  live_says err 'airdos-stereo-camera: no such device'
+  all_ended 0
+  start_live --camera "$log" --side-by-side --calibration "$log" --no-detect --record
+  end_live 0
+  started_with record "--out $work/run/output.lcm --channels STATIC_FEATURES|"
+}
+
+live_plays_a_recording() {
+  fresh
+  start_live --video "$log" "$log" --calibration "$log" --swap
+  end_live 0
+  ran 1 "^airdos-stereo-player --video $log $log --calibration $log --swap --lcm-url udpm://.* --pace lockstep .*--without keypoints,masks\$"
+  started_with person-detector "--pace lockstep"
+  live_says out "run_live.sh: record: exit code 0"
+  started_with record "--out $work/run/output.lcm"
+  ran 0 "^airdos-(map|evaluate)"
+  start_live --images "$work" --times "$log" --calibration "$log" --no-detect --pace realtime
+  end_live 0
+  ran 1 "^airdos-stereo-player --images $work --calibration $log --times $log --lcm-url udpm://.* --pace realtime --resolved-config $work/run/stereo_player.yaml\$"
+}
+
+live_sets_a_value_of_one_process() {
+  fresh
+  start_live --images "$work" --times "$log" --calibration "$log" --pace realtime --set person_detector:time.detect_every=1 \
+    --set optimizer:window.num_frames=7 --set stereo_player:image.max_image_bytes=50000
+  end_live 0
+  started_with person-detector "--set person_detector:network.short_side_px=256 --set person_detector:time.detect_every=1"
+  started_with optimizer "--set optimizer:window.num_frames=7"
+  ran 1 "^airdos-stereo-player .* --set stereo_player:image.max_image_bytes=50000 "
+  if grep -q -e --set "$work/run/frontend.log"; then fail "frontend.log: $(cat "$work/run/frontend.log")"; fi
+  local -a live_here=(env AIRDOS_BIN="$work/bin" "$live" --run-dir "$work/other")
+  expect 2 "--set: 'window.num_frames=7' is not PROCESS:section.key=value" "${live_here[@]}" --set window.num_frames=7
+  expect 2 "--set: 'recorder:a.b=7' is not PROCESS:section.key=value" "${live_here[@]}" --set recorder:a.b=7
+}
+
+live_says_that_it_can_do_without_a_detector() {
+  rm "$work/bin/airdos-person-detector"
+  make_script airdos-person-detector <<< 'echo "no networks"'
+  start_live --video "$log" "$log" --calibration "$log"
+  end_live 1
+  live_says err 'no networks'
+  live_says err 'run_live.sh: person-detector ended before it was ready (--no-detect runs without it)'
+}
+
+live_refuses_what_is_no_source() {
+  local -a live_here=(env AIRDOS_BIN="$work/bin" "$live" --run-dir "$work/other")
+  expect 2 "--camera: the calibration is missing: --calibration FILE" "${live_here[@]}" --camera "$log"
+  expect 2 "--calibration is for --camera, --video and --images" "${live_here[@]}" --calibration "$log"
+  expect 2 "--rate is for --camera, --video and --images" "${live_here[@]}" --rate 5
+  expect 2 "--data and --video exclude each other" "${live_here[@]}" --data "$log" --video "$log" --calibration "$log"
+  expect 2 "--camera needs a value" "${live_here[@]}" --camera --calibration "$log"
+  expect 2 "--camera: no device '/nope'" "${live_here[@]}" --camera /nope --calibration "$log"
+  expect 2 "--video: no file '/nope'" "${live_here[@]}" --video /nope --calibration "$log"
+  expect 2 "--images: no folder '$log'" "${live_here[@]}" --images "$log" --calibration "$log"
+  expect 2 "--calibration: no file '/nope'" "${live_here[@]}" --camera "$log" --calibration /nope
+}
+
 # make_optimizer COMMANDS: one that runs these, then waits.
 make_optimizer() {
   make_script airdos-optimizer << FAKE
@@ -327,10 +426,15 @@ replay_of_a_bad_log_is_refused
 replay_into_a_run_that_has_ended_is_refused
 replay_that_is_interrupted_leaves_nobody
 replay_without_lcm_says_so
+live_refuses_what_is_no_source
 skip_unless_networks
 replay_goes_on_when_a_process_dies
 live_ends_when_all_have_ended
 live_ends_as_its_player_does
+live_takes_a_camera_and_makes_what_the_demo_makes
+live_plays_a_recording
+live_sets_a_value_of_one_process
+live_says_that_it_can_do_without_a_detector
 live_refuses_before_it_starts_anybody
 live_that_is_killed_leaves_nobody
 live_waits_for_what_was_sent

@@ -5,6 +5,8 @@
 
 #include <cstdio>
 #include <memory>
+#include <opencv2/core.hpp>
+#include <opencv2/videoio.hpp>
 #include <regex>
 #include <string>
 #include <vector>
@@ -19,9 +21,9 @@ namespace {
 
 constexpr int kDeadline_s = 60;  // a busy machine
 
-const std::vector<std::string> kPrograms{"airdos-frontend",      "airdos-human-tracker",
-                                         "airdos-optimizer",     "airdos-map-recorder",
-                                         "airdos-stereo-player", "airdos-record"};
+const std::vector<std::string> kPrograms{
+    "airdos-frontend",      "airdos-human-tracker", "airdos-optimizer", "airdos-map-recorder",
+    "airdos-stereo-camera", "airdos-stereo-player", "airdos-record"};
 
 class ServiceProcessTest : public testing::TestWithParam<std::string> {
  protected:
@@ -46,6 +48,11 @@ class ServiceProcessTest : public testing::TestWithParam<std::string> {
       command.insert(command.end(), {"--run-dir", folder_.PathOf("run")});
     } else if (GetParam() == "airdos-record") {
       command.insert(command.end(), {"--out", folder_.PathOf("record.lcm")});
+    } else if (GetParam() == "airdos-stereo-camera") {
+      command.insert(command.end(),
+                     {"--video", WriteVideo(), "--side-by-side", "--rate", "0.1", "--calibration",
+                      folder_.Write("calib.json", R"({"fx": 100, "fy": 100,
+                                         "cx": 32, "cy": 24, "baseline_m": 0.25})")});
     } else if (GetParam() == "airdos-stereo-player") {  // nobody is READY, so it waits
       command.insert(
           command.end(),
@@ -53,6 +60,15 @@ class ServiceProcessTest : public testing::TestWithParam<std::string> {
     }
     command.insert(command.end(), options.begin(), options.end());
     return std::make_unique<ChildProcess>(command, stem());
+  }
+
+  /// A stereo camera's, of 200 s at 0.1 images a second.
+  std::string WriteVideo() const {
+    const std::string path = folder_.PathOf("both.avi");
+    cv::VideoWriter writer(path, cv::CAP_FFMPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10,
+                           {128, 48}, true);
+    for (int i = 0; i < 20; ++i) writer.write(cv::Mat(48, 128, CV_8UC3, cv::Scalar::all(90)));
+    return path;
   }
 
   ScratchFolder folder_{"service_process"};

@@ -58,7 +58,7 @@ class TwoHostsTest : public testing::Test {
       ASSERT_NO_FATAL_FAILURE(b_->StartNode(program));
     WriteEvents(SampleEvents(0, last), folder_ + "input.lcm");
     ChildProcess* player =
-        a_->StartPlayer(folder_ + "input.lcm", {"--pace", "realtime", "--rate", rate});
+        a_->StartPlayer(folder_ + "input.lcm", {"--pace", "realtime", "--speed", rate});
     const auto is_recorded = [&] {
       heard_on_a_->Hear();
       const bool is_all = heard_on_b_->IsDone("airdos-map-recorder", {kSession, last});

@@ -118,6 +118,7 @@ TEST_F(UserCases, CaseC01NoProgramWritesOverItsInput) {
        "--plot", Path("gt.tum")},
       {"airdos-evaluate", "people", "--people", runs, "--joints", runs, "--estimate", tum,
        "--ground-truth", Path("gt.tum"), "--json", runs},
+      {"airdos-evaluate", "detections", "--log", log, "--data", Path("run"), "--json", log},
   };
   const std::vector<std::string> before = Names();
   const std::string files[] = {log, tum, Path("gt.tum"), runs, config, map};
@@ -165,6 +166,8 @@ TEST_F(UserCases, CaseC06InputsOfAnotherKind) {
     ExpectRefused({"airdos-evaluate", "trajectory", "--estimate", tum, "--ground-truth", input},
                   input);
     ExpectRefused({"airdos-evaluate", "curve", "--runs", input}, input);
+    ExpectRefused({"airdos-evaluate", "detections", "--log", input, "--data", Path("folder")},
+                  input);
     ExpectRefused({"airdos-calibration", "show", input}, input);
     ExpectRefused({"airdos-calibration", "convert", input, "--to", "ros", "--out", Path("out")},
                   input);

@@ -24,11 +24,15 @@ std::pair<int, int> TwoNumbers(const std::string& option, const std::string& tex
 
 }  // namespace
 
-CommandOption CalibrationArguments::AddTo(const std::string& names, CommandLine* line) {
+CommandOption CalibrationArguments::AddTo(const std::string& names, CommandLine* line,
+                                          const std::string& more) {
   const CommandOption files =
-      line->Add(names, &paths_,
-                "calibration of an unrectified pair: one file (Kalibr, OpenCV, ORB-SLAM, KITTI, "
-                "ZED, calib.json), or the left and the right camera's (ROS, EuRoC)")
+      line->Add(
+              names, &paths_,
+              std::string() +
+                  "calibration of an unrectified pair: one file (Kalibr, OpenCV, ORB-SLAM, KITTI, "
+                  "ZED, calib.json), or the left and the right camera's (ROS, EuRoC)" +
+                  more)
           .ShownAs("FILE")
           .Words(1, 2);
   line->Add("--size", &size_,

@@ -17,7 +17,8 @@ class CalibrationArguments {
  public:
   /// Adds the options, and returns that of the files, called `names` ("--calibration", or "INPUT"
   /// where they are arguments).
-  CommandOption AddTo(const std::string& names, CommandLine* line);
+  /// `more` is added to its help.
+  CommandOption AddTo(const std::string& names, CommandLine* line, const std::string& more = "");
 
   bool is_given() const { return !paths_.empty(); }
   const std::vector<std::string>& paths() const { return paths_; }

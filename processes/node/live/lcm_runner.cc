@@ -12,6 +12,7 @@
 #include "common/util/version.h"
 #include "processes/node/log/log_source.h"
 #include "processes/node/message/channels.h"
+#include "processes/node/message/figures.h"
 #include "processes/node/message/header.h"
 #include "processes/node/message/types_fingerprint.h"
 
@@ -22,6 +23,10 @@ namespace {
 /// whoever is further down the chain gives up later: else one silent camera would cost two
 /// processes their frame.
 double NumDeadlines(const std::string& channel) {
+  const bool is_of_people = channel == channel::kPersonKeypointsLeft ||
+                            channel == channel::kPersonKeypointsRight ||
+                            channel == channel::kPersonMask;
+  if (is_of_people) return 1.125;  // of the person detector, if there is one
   if (IsInputChannel(channel)) return 1;
   if (channel == channel::kHumanObservations) return 1.25;
   if (channel == channel::kStaticFeatures) return 1.5;
@@ -347,6 +352,10 @@ void LcmRunner::SayCounters() {
           << " ms";
   log_->Info(latency.str());
   for (const auto& [channel, counters] : node_->channels()) {
+    if (channel == figure::kRowError_millipx) {
+      log_->Info(channel + ": " + std::to_string(counters.num_received));
+      continue;
+    }
     log_->Info(channel + ": received " + std::to_string(counters.num_received) + ", missing " +
                std::to_string(counters.num_missing) + ", duplicate " +
                std::to_string(counters.num_duplicate) + ", rejected " +

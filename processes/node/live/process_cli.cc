@@ -55,8 +55,9 @@ void AddCommonOptions(const OptionPages& pages, CommandLine* app, CommonArgument
 }
 
 const std::vector<std::string>& ConfigNames() {
-  static const std::vector<std::string> names{"frontend", "human_tracker", "optimizer",
-                                              "map_recorder", "stereo_player"};
+  static const std::vector<std::string> names{"frontend",     "human_tracker",   "optimizer",
+                                              "map_recorder", "person_detector", "stereo_camera",
+                                              "stereo_player"};
   return names;
 }
 

@@ -47,10 +47,13 @@ int WithOutputChecked(const std::string& program, int code) {
 
 }  // namespace
 
-InputOptions::InputOptions(CommandLine* line) {
-  line->Add("INPUT", &input_, "folder of a data set, or LCM log");
+InputOptions::InputOptions(CommandLine* line, Takes takes) : takes_(takes) {
+  const bool takes_logs = takes == Takes::kAny;
+  line->Add("INPUT", &input_,
+            takes_logs ? "folder of a data set, or LCM log" : "folder of a data set");
   line->AddFolder("--data", &data_, "the same as INPUT");
-  line->AddFile("--log", &log_, "the same as INPUT");
+  CommandOption log = line->AddFile("--log", &log_, "the same as INPUT");
+  if (!takes_logs) log.Hide();
 }
 
 const std::string& InputOptions::path() const {
@@ -63,7 +66,9 @@ const std::string& InputOptions::path() const {
     path = given;
   }
   if (path == nullptr) {
-    throw InputError("INPUT is missing: the folder of a data set (--data) or an LCM log (--log)");
+    throw InputError(std::string("INPUT is missing: the folder of a data set (--data)") +
+                     (takes_ == Takes::kAny ? " or an LCM log (--log)"
+                                            : ", or a recording (--images, --video)"));
   }
   return *path;
 }

@@ -14,14 +14,20 @@ namespace airdos {
 /// The data set or log that a program reads, given as INPUT, --data FOLDER or --log FILE.
 class InputOptions {
  public:
-  explicit InputOptions(CommandLine* line);
+  /// What the program reads, as its help and messages say; what else is given is its own to refuse.
+  enum class Takes { kAny, kDatasets };
+  explicit InputOptions(CommandLine* line, Takes takes = Takes::kAny);
   /// Valid after parsing. Throws InputError if it was given not at all or more than once.
   const std::string& path() const;
+  bool is_given() const { return !input_.empty() || !data_.empty() || !log_.empty(); }
+  /// For what has been parsed as the word of another option.
+  void Give(const std::string& path) { input_ = path; }
 
  private:
   std::string input_;
   std::string data_;
   std::string log_;
+  Takes takes_;
 };
 
 /// Parses and runs `body`. The line must have the program's name. Adds --version: name, version and

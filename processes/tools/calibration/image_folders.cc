@@ -1,55 +1,43 @@
 #include "processes/tools/calibration/image_folders.h"
 
-#include <filesystem>
 #include <numeric>
+#include <opencv2/imgproc.hpp>
 
-#include "common/dataset/image_file.h"
-#include "common/dataset/sequence_files.h"
 #include "common/util/error.h"
 
 namespace airdos {
 namespace {
 
-std::string PathOf(const ImageNames& names, std::size_t index) {
-  return (std::filesystem::path(names.folder) / names.files.at(index)).string();
+cv::Mat Grey(const cv::Mat& image) {
+  if (image.channels() == 1) return image;
+  cv::Mat grey;
+  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
+  return grey;
 }
 
-cv::Mat ReadGrey(const std::string& path) {
-  return DecodePicture(ReadImageFile(path), path, PictureColor::kGrey, {}).pixels;
-}
-
-std::string SizeText(const cv::Mat& image) {
-  return std::to_string(image.cols) + "x" + std::to_string(image.rows) + " px";
+/// Times do not matter here.
+FolderRecordingOptions OptionsOf(const std::string& left, const std::string& right) {
+  return {left, right, "", 1.0};
 }
 
 }  // namespace
 
 ImageFolders::ImageFolders(const std::string& left, const std::string& right)
-    : left_(ListImages(left)), right_(ListImages(right)) {
-  CheckPairs(left_, right_);
-}
+    : recording_(std::make_unique<FolderRecording>(OptionsOf(left, right))) {}
 
-std::string ImageFolders::LeftPath(std::size_t index) const { return PathOf(left_, index); }
-std::string ImageFolders::RightPath(std::size_t index) const { return PathOf(right_, index); }
-
-RawPair ImageFolders::Read(std::size_t index) const {
-  RawPair pair = {ReadGrey(LeftPath(index)), ReadGrey(RightPath(index))};
-  if (pair.left.size() != pair.right.size()) {
-    throw InputError(RightPath(index) + ": has " + SizeText(pair.right) + ", the left image " +
-                     SizeText(pair.left));
-  }
-  return pair;
+std::optional<RawPair> ImageFolders::Read(std::size_t index) const {
+  const std::optional<RecordedPair> pair = recording_->Load(index);
+  if (!pair) return std::nullopt;
+  return RawPair{Grey(pair->left), Grey(pair->right)};
 }
 
 std::vector<RawPair> ImageFolders::Sample(std::size_t count) const {
   std::vector<RawPair> pairs;
   for (const std::size_t index : SampleEvenly(size(), count)) {
-    pairs.push_back(Read(index));
-    if (pairs.back().left.size() != pairs.front().left.size()) {
-      throw InputError(LeftPath(index) + ": has " + SizeText(pairs.back().left) +
-                       ", the first image " + SizeText(pairs.front().left));
-    }
+    const std::optional<RawPair> pair = Read(index);
+    if (pair) pairs.push_back(*pair);
   }
+  if (pairs.empty()) throw InputError(recording_->name() + ": none of its pairs can be used");
   return pairs;
 }
 
@@ -68,12 +56,12 @@ std::vector<CheckedPictures> RectifiedFolders::Load(const std::vector<std::size_
     CheckedPictures pictures;
     pictures.where_left = folders_.LeftPath(frame);
     pictures.where_right = folders_.RightPath(frame);
-    try {
-      const RawPair pair = folders_.Read(frame);
-      pictures.left = rectifier_.Left(pair.left);
-      pictures.right = rectifier_.Right(pair.right);
-    } catch (const InputError& error) {
-      findings->FailFrom("images.unreadable", error.what());
+    const std::optional<RawPair> pair = folders_.Read(frame);
+    if (pair) {
+      pictures.left = rectifier_.Left(pair->left);
+      pictures.right = rectifier_.Right(pair->right);
+    } else {
+      findings->Fail("images.unreadable", pictures.where_left, "this pair cannot be used");
     }
     all.push_back(pictures);
   }

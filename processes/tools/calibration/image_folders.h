@@ -3,34 +3,36 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/calibration/stereo_rectifier.h"
 #include "common/check/check_input.h"
 #include "common/check/check_rig.h"
-#include "common/dataset/image_names.h"
+#include "common/dataset/recording/folder_recording.h"
 
 namespace airdos {
 
-/// The left and the right images of a user, a folder each, as they were recorded.
+/// The left and the right images of a user, a folder each, as they were recorded; grey.
 class ImageFolders {
  public:
-  /// Throws InputError where a folder has no images, or those of the two have other numbers.
+  /// Throws InputError as FolderRecording does.
   ImageFolders(const std::string& left, const std::string& right);
 
-  std::size_t size() const { return left_.files.size(); }
-  const std::string& left_folder() const { return left_.folder; }
-  std::string LeftPath(std::size_t index) const;
-  std::string RightPath(std::size_t index) const;
-  /// Grey. Throws InputError where an image cannot be decoded, or left and right differ in size.
-  RawPair Read(std::size_t index) const;
-  /// Up to `count` pairs, evenly spread. Throws as Read() does, and where they differ in size.
+  std::size_t size() const { return recording_->num_pairs(); }
+  std::string left_folder() const { return recording_->name(); }
+  std::string LeftPath(std::size_t index) const { return recording_->names(index).left; }
+  std::string RightPath(std::size_t index) const { return recording_->names(index).right; }
+  /// Nothing where an image cannot be decoded; a note says so.
+  std::optional<RawPair> Read(std::size_t index) const;
+  /// Up to `count` pairs, evenly spread. Throws InputError where none can be used.
   std::vector<RawPair> Sample(std::size_t count) const;
+  std::vector<std::string> TakeNotes() const { return recording_->TakeNotes(); }
 
  private:
-  ImageNames left_;
-  ImageNames right_;
+  std::unique_ptr<FolderRecording> recording_;
 };
 
 /// The same images rectified, as the checks of data sets see them; they have neither times nor

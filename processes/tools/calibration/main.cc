@@ -61,6 +61,7 @@ int Check(const Arguments& arguments) {
       arguments.calibration.Read({pairs.front().left.cols, pairs.front().left.rows});
   const StereoRectifier rectifier(rig, arguments.calibration.rectifier_options());
   std::cout << RigText(rig, rectifier);
+  for (const std::string& note : folders.TakeNotes()) std::cout << "note: " << note << "\n";
   const RigCheck check = MeasureRig(rectifier, pairs);
   std::cout << RigCheckText(check);
   const std::string& file = arguments.calibration.paths().front();

@@ -9,6 +9,7 @@
 #include "processes/node/live/process_usage.h"
 #include "processes/node/message/channels.h"
 #include "processes/node/message/codec.h"
+#include "processes/node/message/figures.h"
 #include "processes/node/message/validate.h"
 
 namespace airdos {
@@ -19,6 +20,7 @@ constexpr std::size_t kCameraBytes = 90000;  // a JPEG image of 1226 x 370 px
 constexpr double kCameraPeriod_s = 1.0 / 30;
 constexpr double kLastArrival_s = 0.5;  // waits for messages still in transit at the end
 constexpr std::size_t kMaxBytes = 131072;
+constexpr double kNotRectified_px = 1.5;  // as RowWatch has it
 
 /// The start of a test message.
 struct Stamp {
@@ -86,6 +88,14 @@ void JudgeProcess(const process_status_t& status, const std::string& own_version
     result->push_back({Health::kWarn, "bus.warning", NameOf(status) + " says: " + warning, ""});
   }
   for (const channel_status_t& channel : status.channels) {
+    if (channel.channel == figure::kRowError_millipx) {
+      const double error_px = 1e-3 * static_cast<double>(channel.num_received);
+      // What to do about it is in the process's own warning.
+      result->push_back({error_px > kNotRectified_px ? Health::kWarn : Health::kOk, "bus.rows",
+                         NameOf(status) + ": rows of left and right images differ by " +
+                             Format("%.2f", error_px) + " px (median)",
+                         ""});
+    }
     if (channel.num_rejected == 0) continue;
     result->push_back({Health::kWarn, "bus.rejected",
                        NameOf(status) + " rejected " + std::to_string(channel.num_rejected) +

@@ -11,6 +11,7 @@ namespace airdos {
 
 void AddTrajectoryCommand(CommandLine* app);
 void AddPeopleCommand(CommandLine* app);
+void AddDetectionsCommand(CommandLine* app);
 void AddCurveCommand(CommandLine* app);
 void AddSpeedCommand(CommandLine* app);
 void AddAblationCommand(CommandLine* app);

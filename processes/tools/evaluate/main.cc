@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
   app.RequireCommand();
   airdos::AddTrajectoryCommand(&app);
   airdos::AddPeopleCommand(&app);
+  airdos::AddDetectionsCommand(&app);
   airdos::AddCurveCommand(&app);
   airdos::AddSpeedCommand(&app);
   airdos::AddAblationCommand(&app);

@@ -19,10 +19,19 @@ void ProgressBar::Show(double fraction_done) {
     bar.resize(kWidth, '.');
     std::fprintf(stderr, "\r[%s] %3d %%%s", bar.c_str(), percent, percent == 100 ? "\n" : "");
     last_percent_ = percent;
+    is_drawn_ = percent < 100;
   } else if (!is_terminal_ && percent / 10 > last_percent_ / 10) {
     std::fprintf(stderr, "%d %%\n", percent / 10 * 10);
     last_percent_ = percent;
   }
+}
+
+void ProgressBar::MakeRoom() {
+  if (!is_drawn_) return;
+  constexpr char kEraseLine[] = "\r\033[K";
+  std::fputs(kEraseLine, stderr);
+  last_percent_ = -1;
+  is_drawn_ = false;
 }
 
 }  // namespace airdos

@@ -8,10 +8,13 @@ class ProgressBar {
  public:
   ProgressBar();
   void Show(double fraction_done);
+  /// Makes room on a terminal for a line on stderr; Show() then draws the bar below it.
+  void MakeRoom();
 
  private:
   bool is_terminal_;
   int last_percent_ = 0;
+  bool is_drawn_ = false;  // the cursor stands behind the bar
 };
 
 }  // namespace airdos

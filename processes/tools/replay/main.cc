@@ -3,13 +3,19 @@
 #include <limits>
 #include <memory>
 #include <opencv2/core/utility.hpp>
+#include <set>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "common/util/error.h"
 #include "processes/node/check/input_check.h"
+#include "processes/node/check/watched_source.h"
 #include "processes/node/live/process_cli.h"
+#include "processes/node/live/recording_cli.h"
 #include "processes/node/log/looped_source.h"
+#include "processes/node/log/partial_source.h"
 #include "processes/tools/progress/progress_bar.h"
 #include "processes/tools/replay/replay.h"
 #include "processes/tools/replay/replay_setup.h"
@@ -31,7 +37,9 @@ int main(int argc, char** argv) {
   bool digest = false;
   bool digest_only = false;
   setup.config_dir = airdos::ConfigFolder();
-  const airdos::InputOptions input(&app);
+  airdos::InputOptions input(&app);
+  airdos::RecordingArguments recording;
+  recording.AddTo(&app);
   airdos::InputCheckOptions check;
   airdos::AddInputCheckOptions(&app, &check);
   app.AddFile("--out", &options.out_path, "log of what the processes publish");
@@ -53,6 +61,10 @@ int main(int argc, char** argv) {
   app.AddFlag("--from-features", &setup.from_features,
               "run only the optimizer and the map recorder, on the features and people that the "
               "log holds (airdos-simulate)");
+  app.AddFlag("--detect", &setup.detects,
+              "run the person detector as well; keypoints and masks of the log or data set are not "
+              "used")
+      .Excludes("--from-features");
   app.Add("--threads", &threads, "1: all in one; auto: one per process, if there are enough cores")
       .OneOf({"1", "auto"})
       .ShowDefault();
@@ -63,6 +75,11 @@ int main(int argc, char** argv) {
   app.AddFlag("--digest-only", &digest_only, "print the digests of the log itself; run nothing");
 
   return airdos::RunProgram(argc, argv, &app, [&] {
+    recording.Settle(&input);
+    check.calibration = recording.named_calibration();
+    if (recording.is_given() && (digest_only || setup.from_features)) {
+      throw airdos::InputError("--digest-only and --from-features are for logs");
+    }
     if (digest_only) {
       std::cout << airdos::FormatDigests(airdos::DigestLog(input.path()));
       return 0;
@@ -74,29 +91,51 @@ int main(int argc, char** argv) {
       std::cerr << "airdos-replay: " << line << std::endl;
     };
     const auto open = [&] {
-      return airdos::OpenFrameSource(input.path(), first, last, inputs, check.calibration);
+      auto whole = recording.is_given() ? airdos::OpenRecordingSource(recording, first, last)
+                                        : airdos::OpenFrameSource(input.path(), first, last, inputs,
+                                                                  check.calibration);
+      if (!setup.detects) return whole;
+      return std::unique_ptr<airdos::FrameSource>(std::make_unique<airdos::PartialSource>(
+          std::move(whole), airdos::ChannelsOfPeople("--detect", {"keypoints", "masks"})));
     };
-    airdos::LoopedSource source(open, num_loops);
+    airdos::RowWatch rows(recording.is_given() ? recording.HowToExamine()
+                                               : airdos::HowToRectify("airdos-replay"));
+    const std::string name = recording.is_given() ? recording.name() : input.path();
+    airdos::WatchedSource source(std::make_unique<airdos::LoopedSource>(open, num_loops), name,
+                                 &rows);
     // Reported only once everything else is known to be right.
     std::vector<std::string> remarks;
     for (const std::string& note : source.TakeNotes()) remarks.push_back("note: " + note);
     if (!check.is_off && !setup.from_features) {
-      airdos::CheckBeforeRun(input.path(), check.calibration,
-                             [&](const std::string& line) { remarks.push_back(line); });
+      const auto keep = [&](const std::string& line) { remarks.push_back(line); };
+      if (recording.is_given()) {
+        airdos::CheckRecordingBeforeRun(*recording.Open(), keep);
+      } else {
+        airdos::CheckBeforeRun(input.path(), check.calibration, keep);
+      }
     }
     if (!config_path.empty()) airdos::SetConfig(config_path, &setup);
-    setup.rules.inputs = {input.path()};
+    setup.rules.inputs =
+        recording.is_given() ? recording.paths() : std::vector<std::string>{input.path()};
     setup.outputs = {options.out_path, timing_path};
     const airdos::ReplayNodes replay = airdos::PrepareReplay(setup);
     for (const std::string& remark : remarks) say(remark);
     options.is_parallel = threads == "auto" && std::thread::hardware_concurrency() > 1;
     airdos::ProgressBar bar;
     if (!no_progress) options.on_progress = [&bar](double fraction) { bar.Show(fraction); };
+    std::set<std::string> said;
+    options.on_remark = [&](const std::string& remark) {
+      bar.MakeRoom();
+      say((remark.find("warning: ") == std::string::npos ? "note: " : "") + remark);
+      said.insert(remark);
+    };
     const airdos::ReplayResult result = airdos::Replay(&source, replay.nodes, options);
     if (!timing_path.empty()) airdos::WriteTiming(result, timing_path);
     std::cout << (digest ? airdos::FormatDigests(result.digests) : airdos::FormatSummary(result));
     if (digest) {  // which must not hide that something was rejected
-      for (const std::string& remark : result.remarks) std::cerr << "note: " << remark << "\n";
+      for (const std::string& remark : result.remarks) {
+        if (said.count(remark) == 0) std::cerr << "note: " << remark << "\n";
+      }
     }
     const std::string why_in_vain = airdos::WhyInVain(result.tally);
     if (!why_in_vain.empty()) say(why_in_vain);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iomanip>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -31,12 +32,16 @@ double NowMs(clockid_t clock) {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-// Accumulates the time of a node's calls until it is done with a frame. Each node has its own
-// entry, so nodes on different threads do not interfere.
-class Stopwatch : public Bus::WorkObserver {
+std::string WarningText(const Node& node, const std::string& warning) {
+  return node.name() + ": warning: " + warning;
+}
+
+// Accumulates the time of a node's calls until it is done with a frame, and collects its warnings.
+// Each node has its own entry, so nodes on different threads do not interfere.
+class Overseer : public Bus::WorkObserver {
  public:
-  explicit Stopwatch(const std::vector<ReplayNode>& nodes) {
-    for (const ReplayNode& entry : nodes) laps_[entry.node->name()];
+  explicit Overseer(const std::vector<ReplayNode>& nodes) {
+    for (const ReplayNode& entry : nodes) laps_[entry.node->name()].node = entry.node.get();
   }
   void BeforeWork(const Node& node) override {
     Lap& lap = laps_.at(node.name());
@@ -47,6 +52,7 @@ class Stopwatch : public Bus::WorkObserver {
     Lap& lap = laps_.at(node.name());
     lap.cpu_ms += NowMs(CLOCK_THREAD_CPUTIME_ID) - lap.start_cpu_ms;
     lap.wall_ms += NowMs(CLOCK_MONOTONIC) - lap.start_wall_ms;
+    KeepWarnings(lap.node->TakeWarnings(), node);
     if (node.frames().num_done == lap.num_done) return;
     lap.timing.wall_ms.push_back(std::exchange(lap.wall_ms, 0));
     lap.timing.cpu_ms.push_back(std::exchange(lap.cpu_ms, 0));
@@ -59,9 +65,15 @@ class Stopwatch : public Bus::WorkObserver {
     }
     return timing;
   }
+  // Those since the last call; called by a thread that no node works on.
+  std::vector<std::string> TakeWarnings() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::exchange(warnings_, {});
+  }
 
  private:
   struct Lap {
+    Node* node = nullptr;
     double start_wall_ms = 0;
     double start_cpu_ms = 0;
     double wall_ms = 0;
@@ -69,7 +81,15 @@ class Stopwatch : public Bus::WorkObserver {
     std::int64_t num_done = 0;
     NodeTiming timing;
   };
+
+  void KeepWarnings(const std::vector<std::string>& warnings, const Node& node) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const std::string& warning : warnings) warnings_.push_back(WarningText(node, warning));
+  }
+
   std::map<std::string, Lap> laps_;
+  std::mutex mutex_;
+  std::vector<std::string> warnings_;  // of all nodes
 };
 
 using FrameKey = std::pair<std::int64_t, std::int64_t>;  // (session, seq)
@@ -77,7 +97,10 @@ using FrameKey = std::pair<std::int64_t, std::int64_t>;  // (session, seq)
 // Keeps what the bus carries: log, digests, frame numbers.
 class Archive {
  public:
-  explicit Archive(const ReplayOptions& options) : writes_inputs_(options.writes_inputs) {
+  Archive(const std::vector<ReplayNode>& nodes, const ReplayOptions& options)
+      : writes_inputs_(options.writes_inputs) {
+    for (const ReplayNode& entry : nodes)
+      published_.insert(entry.publishes.begin(), entry.publishes.end());
     if (!options.out_path.empty()) writer_.emplace(options.out_path);
   }
 
@@ -85,12 +108,14 @@ class Archive {
     const void* data = message.payload.data();
     const std::size_t size = message.payload.size();
     const Header header = PeekHeader(data, size).value_or(Header{});
-    const bool is_input = IsInputChannel(message.channel);
+    // People come from the source or from a detector that runs here.
+    const bool is_published = published_.count(message.channel) > 0;
+    const bool is_input = IsInputChannel(message.channel) && !is_published;
     if (message.channel == channel::kCameraLeft || message.channel == channel::kCameraRight ||
         message.channel == channel::kStaticFeatures)
       frames_.insert({header.session, header.seq});
     tally_.Take(message.channel, data, size);
-    if (IsOutputChannel(message.channel)) digests_.Add(message.channel, data, size);
+    if (IsOutputChannel(message.channel) || is_published) digests_.Add(message.channel, data, size);
     if (writer_ && (writes_inputs_ || !is_input))
       writer_->Append(header.utime, message.channel, data, size);
   }
@@ -105,6 +130,7 @@ class Archive {
 
  private:
   bool writes_inputs_;
+  std::set<std::string> published_;
   std::optional<EventLogWriter> writer_;
   ChannelDigests digests_;
   std::set<FrameKey> frames_;
@@ -128,7 +154,7 @@ void AddRemarks(const Node& node, std::vector<std::string>* remarks) {
                        " frames incomplete");
   }
   for (const std::string& warning : node.warnings()) {
-    remarks->push_back(node.name() + ": warning: " + warning);
+    remarks->push_back(WarningText(node, warning));
   }
   for (const auto& [channel, counters] : node.channels()) {
     const auto add = [&, name = channel](std::int64_t count, const std::string& what) {
@@ -174,31 +200,39 @@ std::vector<Envelope> NextFrame(FrameSource* source, Bus* bus) {
 
 ReplayResult Replay(FrameSource* source, const std::vector<ReplayNode>& nodes,
                     const ReplayOptions& options) {
-  Archive archive(options);
-  Stopwatch stopwatch(nodes);
+  Archive archive(nodes, options);
+  Overseer overseer(nodes);
+  const auto say = [&options](const std::vector<std::string>& remarks) {
+    if (!options.on_remark) return;
+    for (const std::string& remark : remarks) options.on_remark(remark);
+  };
   std::unique_ptr<Bus> bus = std::make_unique<FifoBus>();
   if (options.is_parallel) bus = std::make_unique<ParallelBus>();
   for (const ReplayNode& entry : nodes) bus->AddNode(entry.node.get(), entry.publishes);
   bus->AddObserver([&archive](const Envelope& message) { archive.Take(message); });
-  bus->SetWorkObserver(&stopwatch);
+  bus->SetWorkObserver(&overseer);
 
   ReplayResult result;
   const double start_ms = NowMs(CLOCK_MONOTONIC);
   for (;;) {
     std::vector<Envelope> frame = NextFrame(source, bus.get());
-    for (const std::string& note : source->TakeNotes()) result.remarks.push_back(note);
+    const std::vector<std::string> notes = source->TakeNotes();
+    result.remarks.insert(result.remarks.end(), notes.begin(), notes.end());
+    say(notes);
+    say(overseer.TakeWarnings());
     if (frame.empty()) break;
     bus->PublishFrame(std::move(frame));
     if (options.on_progress) options.on_progress(source->fraction_done());
   }
   bus->Finish();
+  say(overseer.TakeWarnings());
   result.wall_s = 1e-3 * (NowMs(CLOCK_MONOTONIC) - start_ms);
   for (const ReplayNode& entry : nodes) entry.node->Finish();
 
   archive.Fill(&result);
   // Whatever went to a pipe or a device cannot be read again.
   if (StampOf(options.out_path)) result.log_sha256 = FileSha256(options.out_path);
-  result.timing = stopwatch.TakeTiming();
+  result.timing = overseer.TakeTiming();
   for (const ReplayNode& entry : nodes) AddRemarks(*entry.node, &result.remarks);
   return result;
 }

@@ -27,6 +27,10 @@ struct ReplayOptions {
   bool writes_inputs = false;               ///< whether it includes the inputs
   bool is_parallel = false;                 ///< one thread per node; results are the same
   std::function<void(double)> on_progress;  ///< called after each frame with 0..1; may be empty
+  /// Called with what the source notes and the nodes warn of ("frontend: warning: …") while it is
+  /// not too late to stop; always by the calling thread; may be empty. ReplayResult::remarks has
+  /// these as well.
+  std::function<void(const std::string&)> on_remark;
 };
 
 /// The time that one node took for each of its frames, including the time spent on receiving; CPU

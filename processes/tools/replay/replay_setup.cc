@@ -21,6 +21,7 @@
 #include "processes/node/live/process_cli.h"
 #include "processes/node/message/channels.h"
 #include "processes/optimizer/optimizer_node.h"
+#include "processes/person_detector/person_detector_node.h"
 #include "processes/stereo_player/dataset_source.h"
 
 namespace airdos {
@@ -30,6 +31,8 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kSession = 1;  // of data sets; always the same, so that runs are comparable
 
+constexpr char kDetector[] = "person_detector";
+
 struct Process {
   std::string name;  // in its configuration file and in overrides
   RenamedKeys renamed;
@@ -38,8 +41,12 @@ struct Process {
   std::vector<std::string> publishes;
 };
 
-const std::vector<Process>& Processes() {
+const std::vector<Process>& AllProcesses() {
   static const std::vector<Process> processes{
+      {kDetector,
+       PagesOf<PersonDetectorOptions>().renamed,
+       MakePersonDetectorNode,
+       {channel::kPersonKeypointsLeft, channel::kPersonKeypointsRight, channel::kPersonMask}},
       {"frontend",
        PagesOf<FrontendOptions>().renamed,
        MakeFrontendNode,
@@ -56,6 +63,13 @@ const std::vector<Process>& Processes() {
   return processes;
 }
 
+/// Those that run.
+std::vector<Process> Processes(const ReplaySetup& setup) {
+  std::vector<Process> processes = AllProcesses();
+  if (!setup.detects) processes.erase(processes.begin());
+  return processes;
+}
+
 using Configs = std::map<std::string, ConfigReader>;                  // by process
 using Assignments = std::map<std::string, std::vector<std::string>>;  // by process, in order
 
@@ -67,7 +81,7 @@ std::string ConfigPath(const ReplaySetup& setup, const std::string& process) {
 
 Configs ReadConfigs(const ReplaySetup& setup) {
   Configs configs;
-  for (const Process& process : Processes()) {
+  for (const Process& process : Processes(setup)) {
     configs.emplace(process.name,
                     ConfigReader::FromFile(ConfigPath(setup, process.name), process.renamed));
   }
@@ -164,7 +178,7 @@ void SetConfig(const std::string& path, ReplaySetup* setup) {
   }
   RequireRegularFile(path);
   std::vector<std::string> names;
-  for (const Process& process : Processes()) names.push_back(process.name);
+  for (const Process& process : AllProcesses()) names.push_back(process.name);
   const std::string stem = fs::path(path).stem().string();
   if (std::find(names.begin(), names.end(), stem) == names.end()) {
     const std::string hint = DidYouMean(stem, names);
@@ -180,8 +194,8 @@ ReplayNodes PrepareReplay(const ReplaySetup& setup) {
     for (const std::string& assignment : assignments) configs.at(process).Override(assignment);
   }
   ReplayNodes result;
-  for (const Process& process : Processes()) {
-    const bool makes_features = process.name == "frontend" || process.name == "human_tracker";
+  for (const Process& process : Processes(setup)) {
+    const bool makes_features = process.name != "optimizer";
     if (process.make_node == nullptr || (setup.from_features && makes_features)) continue;
     ConfigReader& config = configs.at(process.name);
     result.nodes.push_back({process.make_node(&config), process.publishes});
@@ -190,7 +204,7 @@ ReplayNodes PrepareReplay(const ReplaySetup& setup) {
   MapRecorderOptions recording = ReadMapRecorderOptions(&configs.at("map_recorder"));
   configs.at("map_recorder").Finish();
   recording.rules = setup.rules;
-  for (const Process& process : Processes()) {
+  for (const Process& process : Processes(setup)) {
     recording.rules.inputs.push_back(ConfigPath(setup, process.name));
   }
   if (recording.directory.empty()) {
@@ -206,7 +220,7 @@ ReplayNodes PrepareReplay(const ReplaySetup& setup) {
   }
   result.outputs = std::make_unique<OutputFiles>(outside, recording.rules);
   std::vector<std::string> configurations;
-  for (const Process& process : Processes()) {
+  for (const Process& process : Processes(setup)) {
     const bool is_run =
         process.make_node == nullptr || !setup.from_features || process.name == "optimizer";
     if (is_run && !setup.run_dir.empty()) configurations.push_back(process.name);
@@ -231,6 +245,12 @@ std::unique_ptr<FrameSource> OpenFrameSource(const std::string& path, std::int64
     return std::make_unique<DatasetSource>(path, first, last, kSession, ImagePackerOptions(),
                                            calibration);
   return std::make_unique<LogSource>(path, first, last, inputs);
+}
+
+std::unique_ptr<FrameSource> OpenRecordingSource(const RecordingArguments& recording,
+                                                 std::int64_t first, std::int64_t last) {
+  return std::make_unique<DatasetSource>(recording.Open(), recording.name(), first, last, kSession,
+                                         ImagePackerOptions());
 }
 
 }  // namespace airdos

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/util/output_files.h"
+#include "processes/node/live/recording_cli.h"
 #include "processes/node/log/log_source.h"
 #include "processes/tools/replay/replay.h"
 
@@ -24,6 +25,7 @@ struct ReplaySetup {
   /// Overrides, applied last: "process:section.key=value", or without process if only one has
   /// the key.
   std::vector<std::string> overrides;
+  bool detects = false;        ///< the person detector runs, too; the source must not speak for it
   bool from_features = false;  ///< only optimizer and map recorder, on a log of features
   /// What is read besides the configurations, and what may be replaced.
   OutputRules rules;
@@ -58,6 +60,9 @@ std::unique_ptr<FrameSource> OpenFrameSource(
     const std::string& path, std::int64_t first = std::numeric_limits<std::int64_t>::min(),
     std::int64_t last = std::numeric_limits<std::int64_t>::max(),
     LogInputs inputs = LogInputs::kImages, const std::string& calibration = "");
+/// The same of a recording.
+std::unique_ptr<FrameSource> OpenRecordingSource(const RecordingArguments& recording,
+                                                 std::int64_t first, std::int64_t last);
 
 }  // namespace airdos
 

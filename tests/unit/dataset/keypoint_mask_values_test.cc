@@ -205,6 +205,7 @@ TEST_F(KeypointMaskValuesTest, OtherFilesInOurFoldersAreErrorsWhereNothingElseIs
   const std::vector<std::string> unread = Unread(folder_);
   EXPECT_TRUE(HasOne(unread, "/image_0: holds 1 .tif", "not read"));
   EXPECT_TRUE(HasOne(unread, "!/alphapose_0: holds only 1 .json", "not read"));
+  EXPECT_TRUE(HasOne(unread, "!/alphapose_0: holds only 1 .json", "airdos-import"));
   EXPECT_TRUE(HasOne(unread, "/keypoints_b: ", "rename"));
   EXPECT_EQ(unread.size(), 3u);
 }

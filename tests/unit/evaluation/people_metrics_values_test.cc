@@ -1,6 +1,7 @@
 // The figures of people and the files they come from, each worked out by hand.
 #include <gtest/gtest.h>
 
+#include <set>
 #include <string>
 
 #include "common/evaluation/identity.h"
@@ -175,6 +176,8 @@ TEST(PeopleFilesValuesTest, FieldByField) {
   EXPECT_EQ(person.joints.at(2), Vector3d(1, 2, 3));
   EXPECT_EQ(person.num_visible_left, 3);
   EXPECT_EQ(person.num_visible_right, 1);
+  EXPECT_EQ(person.visible_left, (std::set<int>{0, 2, 3}));
+  EXPECT_EQ(person.visible_right, (std::set<int>{1}));
   EXPECT_FALSE(truth[0].people.at(9).num_visible_left);
 }
 
