@@ -3,7 +3,7 @@
 # libFuzzer and the address and undefined-behaviour sanitizers, and runs each of them for a few seconds.
 #
 # Usage: launch_scripts/fuzz.sh [--seconds N] [--jobs N] [--build-only] [--with-tests] [TARGET…]
-#   --seconds N   time per target (default 10; an hour in total for the 29 targets: 125)
+#   --seconds N   time per target (default 10; an hour in total for the 39 targets: 92)
 #   --jobs N      number of targets run at the same time (default: one per processor)
 #   --build-only  do not run the targets
 #   --with-tests  also build the tests that run under sanitizers, from the same objects (test.sh runs them)
