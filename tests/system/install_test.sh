@@ -74,6 +74,7 @@ configurations_are_read_from_there() {
     if [[ $process == person_detector ]]; then sed -i 's/head: movenet /head: nothing /' "$file"; fi
     arguments=(--lcm-url memq://) code=0
     if [[ $process == stereo_player ]]; then arguments+=(--data "$work"); fi
+    if [[ $process == stereo_camera ]]; then arguments+=(--camera /dev/null --side-by-side --calibration "$work/none.yaml"); fi
     if [[ $process == map_recorder ]]; then arguments+=(--run-dir "$work/map"); fi
     "$prefix/bin/airdos-${process//_/-}" "${arguments[@]}" > "$work/out" 2>&1 || code=$?
     ((code == 2)) || fail "$process: exit code $code, not 2: $(cat "$work/out")"
